@@ -38,7 +38,7 @@ awk -F, -v OFS=, 'NR > 1 { sub(/\./, ",", $3); $3 = "\"" $3 "\"" } { print }' po
 sed '4s/,\([0-9]*\)\(\r\)$/.\1\2/' comma.csv >mixed.csv
 awk -F, -v OFS=, 'NR == 4 { $3 = "damp" } { print }' point.csv >damp.csv
 awk -F, -v OFS=, 'NR == 4 { $3 = "NA" } { print }' point.csv >missing.csv
-awk -F, -v OFS=, '{ $3 = NR == 1 ? "shelf" : NR % 3 ? NR % 3 : "S" } { print }' point.csv >shelf.csv
+awk -F, -v OFS=, '{ $3 = NR == 1 ? "shelf" : NR % 4 ? NR % 4 : "S" } { print }' point.csv >shelf.csv
 while IFS='|' read -r code words data model; do
   for tool in "doe $data" "loop --table $data"; do
     expect "$code" "$words" "$program" $tool --response y --model "$model" -o out.json
@@ -50,7 +50,7 @@ done <<'TABLE'
 65|words.csv: row 1 \(line 2\), column 'humidity': .*semicolons|words.csv|T_C + humidity
 65|mixed.csv: row 3 \(line 4\), column 'y': a point, but a comma in line 2|mixed.csv|T_C
 65|damp.csv: row 3 \(line 4\), column 'humidity': 'damp' is not a number|damp.csv|T_C + humidity
-65|shelf.csv: row 2 \(line 3\), column 'shelf': 'S' is not a number|shelf.csv|T_C + shelf
+65|shelf.csv: row 3 \(line 4\), column 'shelf': 'S' is not a number|shelf.csv|T_C + shelf
 0||shelf.csv|T_C + factor(shelf)
 TABLE
 # Decimal commas between commas: said as such with a name in the row, a sign, an exponent, and in a manifest.

@@ -44,6 +44,7 @@ echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_m
 expect 0 "" "$kept" render plate.json -o plate.png
 expect 0 "" "$kept" measure plate.png --design grid.json -o grid_measured.json
 expect 0 "" "$kept" loop plate.png --design grid.json -o grid_loop.json --model-out grid_scanner.json
+expect 0 "" "$kept" scanner grid_scanner.json grid_scanner.json -o scanner_change.json
 expect 0 "" "$kept" loop --table "$runs" --response springback_error_pct \
   --model '1 + pressure_bar + temperature_C + duration_h' -o table.json --model-out model.json
 expect 0 "" "$kept" doe "$runs" --response springback_error_pct --model 'temperature_C*duration_h' -o doe.json
