@@ -11,7 +11,7 @@ usage() {
 usage: tests/run.sh [--quick | --long [PART...] | --help]
 
   (nothing)  builds foilgauge twice, for release in build/ and with sanitizers and warnings as errors in build-sanitize/,
-             and runs every test in both: some fifteen minutes on two cores
+             and runs every test in both: some fifteen minutes on two cores, of which the tests take eleven
   --quick    builds for release alone and runs the tests that are labelled `quick`: less than a minute after the build.
              Every room's unit tests and a script for each command are among them
   --long     what takes hours, in parts of less than two hours each on two cores (one that takes longer fails): all of them,

@@ -60,7 +60,8 @@ typedef struct fg_scanner_change {
   fg_scanner_place largest;
   double largest_um, u_largest_um; /* along the difference there */
   double rms_um;                   /* along one axis, over all places */
-  double would_show_um; /* rms difference of shape, without the numbers, that p < 0.01 tells */
+  double would_show_um;            /* rms difference of shape, without the numbers, that p < 0.01
+                                    * tells; NAN: neither model has a shape */
   double p_value;
   fg_scanner_verdict verdict;
   double limit_um; /* NaN: none */

@@ -371,7 +371,7 @@ static void tell_places(const change_work *work, const double *difference, doubl
   }
   change->rms_um = sqrt(square / count);
   fg_sort(u, n);
-  change->would_show_um = sqrt(critical) * u[n / 2];
+  change->would_show_um = critical > 0 ? sqrt(critical) * u[n / 2] : NAN;
 }
 
 static fg_scanner_limit judge_limit(const fg_scanner_change *change) {
@@ -404,12 +404,17 @@ static void say_change(fg_scanner_change *change) {
       [FG_SCANNER_SUSPECTED] = "The scanner may have changed",
       [FG_SCANNER_CHANGED] = "The scanner has changed",
   };
+  char shows[160] = " Neither model holds more than scale, ratio and shear: a change of shape "
+                    "was not looked for.";
+  if (isfinite(change->would_show_um))
+    fg_text_clip(shows, sizeof shows,
+                 " Beside scale, ratio and shear, %.2f µm rms over the bed would have shown.",
+                 change->would_show_um);
   fg_text_clip(change->sentence, sizeof change->sentence,
-               "%s (p = %.2g): the models differ by at most %.2f ± %.2f µm over %.0f × %.0f mm; a "
-               "difference of %.2f µm rms would have shown.",
+               "%s (p = %.2g): the models differ by at most %.2f ± %.2f µm over %.0f × %.0f mm.%s",
                verdicts[change->verdict], change->p_value, change->largest_um,
                2 * change->u_largest_um, change->high_mm[0] - change->low_mm[0],
-               change->high_mm[1] - change->low_mm[1], change->would_show_um);
+               change->high_mm[1] - change->low_mm[1], shows);
   put_limit_words(change);
 }
 

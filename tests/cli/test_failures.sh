@@ -70,7 +70,7 @@ while ((least - below > 500)); do
   kib=$(((below + least) / 2))
   limited $kib "$program" version >/dev/null 2>&1 && least=$kib || below=$kib
 done
-for ((kib = least - 2000; kib < least + 16000; kib += 300)); do
+for ((kib = least - 2000; kib < least + 16000; kib += 600)); do
   code=0
   rm -rf "$work/lot"
   limited $kib "$program" lot "$work/scans" -o "$work/lot" >/dev/null 2>"$work/said" || code=$?
@@ -100,7 +100,7 @@ fail_allocations() {
   run_failing 0
   total=$(sed -n 's/^allocations: //p' "$work/said")
   $check $code "$name: no failure"
-  for ((at = 1; at <= total; at += at < 60 ? 1 : stride)); do
+  for ((at = 1; at <= total; at += at < 30 ? 1 : stride)); do
     run_failing "$at"
     $check $code "$name: allocation $at of $total"
     run_failing "$at" on

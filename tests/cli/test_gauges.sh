@@ -65,7 +65,7 @@ P
 cat >curves.py <<'P'
 from draw import *
 
-USUAL = [(2400, True, "curve")] if BRIEF else [(2400, True, "curve"), (2400, False, "plain"), (4800, True, "s")]
+USUAL = [(2400, True, "curve")] if BRIEF else [(2400, True, "curve"), (2400, False, "s")]
 for dpi in 2400, 4800:
     for light in True, False:
         for kind, curve in ("plain", None), ("curve", CURVE), ("s", S):

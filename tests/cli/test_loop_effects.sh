@@ -37,12 +37,12 @@ found growth scan.ripple_growth '"amplitude_um":6,"period_mm":7,"phase_deg":30,"
 near "the growing ripple" "$(number growth amplitude_um)" 6 0.2
 near "its growth" "$(number growth growth_per_mm)" 0.05 0.003
 
+# More of the kind.
+[ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
+
 found tilt scan.chip_tilt '"amplitude_um":16,"x_mm":12.3,"pitch_mm":9.4' 0.0002 0.001 10
 near "the tilt" "$(number tilt amplitude_um)" 16 1
 near "the chips" "$(number tilt pitch_mm)" 9.4 0.1
-
-# More of the kind.
-[ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
 
 found quintic scan.optical_quintic '"amplitude_um":25,"centre_mm":18'
 near "the quintic" "$(number quintic amplitude_um)" 25 0.5

@@ -82,13 +82,13 @@ if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
   judged oval_rough 2 open
   draw crown 7 30 '{"id":"part.bump_crown","amplitude_um":6}'
   judged crown 1 value
+  draw shear 7 45 '{"id":"scan.shear","value":0.001}'
+  judged shear 1 value
 fi
 draw clean 8 -80 '' "$rough"
 judged clean 2 value
 on_terminal clean
 grep -q 'foil 1: R0 .*, form error below [0-9.]* um$' clean.txt || fail "a clean foil has no upper limit: $(grep R0 clean.txt)"
-draw shear 7 45 '{"id":"scan.shear","value":0.001}'
-judged shear 1 value
 
 # A bump whose deviation passes for its fillets: a tenth of its arc is not seen.
 draw raised 7 30 '{"id":"free.bump.index","amplitude_um":15,"bumps":[4]}'

@@ -123,7 +123,8 @@ static void any_bumps_may_be_missing(void **state) {
 static void any_bumps_may_be_crushed(void **state) {
   (void)state;
   static const double factors[] = {0.5, 0.4, 0.3};
-  for (unsigned set = 0; set < 1u << BUMPS; set += 1 + set % 3 + test_step(9) - 1) {
+  const unsigned skipped = getenv("FOILGAUGE_TEST_BRIEF") ? 8 : 0;
+  for (unsigned set = 0; set < 1u << BUMPS; set += 1 + set % 3 + skipped) {
     char members[1000] = ",\"crushed\":[";
     for (int i = 0; i < BUMPS; i++)
       if (set & 1u << i)

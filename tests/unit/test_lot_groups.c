@@ -6,7 +6,7 @@
 #include "support/group_lots.h"
 #include "support/test.h"
 
-enum { LOTS = 500 };
+enum { LOTS = 250 };
 
 typedef struct tally {
   int below[FG_LOT_GROUP_TESTS], family;

@@ -45,7 +45,7 @@ static void put_change_tiles(FILE *out, const fg_scanner_change *change) {
                   [FG_SCANNER_CHANGED] = {"Changed", FG_TILE_BAD}};
   const fg_tile tiles[] = {
       {"Scanner", .text = verdicts[change->verdict].words, .look = verdicts[change->verdict].look},
-      {"Largest difference", .value = change->largest_um, .u = change->u_largest_um, .digits = 3,
+      {"Largest difference", .value = change->largest_um, .u = change->u_largest_um, .decimals = 2,
        .unit = "µm", .u_words = FG_TILE_U_IS_2U},
       {"p", .value = change->p_value, .digits = 2, .small = "that chance differs as much"},
       {"Would have shown", .value = change->would_show_um, .digits = 3, .unit = "µm",
