@@ -84,6 +84,9 @@ void fg_overwrite_free(fg_overwrite *overwrite);
  * it. */
 fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char **text);
 
+/* Reads a secret: the first word of the first line. FG_ERR_IO, FG_ERR_DATA: there is none. */
+fg_status fg_file_read_token(fg_context *ctx, const char *path, char *token, int size);
+
 /* Writes CSV by `write`, with commas and decimal points. With `decimal_comma` it writes the same
  * cells between semicolons, numbers with decimal commas, after a byte order mark, as spreadsheets
  * of many countries read it. */

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cli/pages_options.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/commands.h"
+#include "foilgauge/file.h"
 
 static void check_pages_options(const fg_cli_pages *pages, struct argp_state *state) {
   const fg_station_request *request = &pages->request;
@@ -55,16 +54,6 @@ error_t fg_cli_pages_option(int key, char *text, struct argp_state *state, fg_cl
   return 0;
 }
 
-static fg_status read_token(fg_context *ctx, const char *path, char token[FG_CLI_TOKEN_BYTES]) {
-  FILE *file = fopen(path, "re");
-  if (!file) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  char *line = fgets(token, FG_CLI_TOKEN_BYTES, file);
-  fclose(file);
-  if (!line) return fg_fail(ctx, FG_ERR_DATA, "%s: there is no token in it", path);
-  token[strcspn(token, " \t\r\n")] = '\0';
-  return FG_OK;
-}
-
 static void print_address(void *user, const char *address) {
   (void)user;
   printf("%s\n", address);
@@ -73,7 +62,8 @@ static void print_address(void *user, const char *address) {
 
 fg_status fg_cli_pages_end(fg_context *ctx, fg_cli_pages *pages) {
   fg_station_request *request = &pages->request;
-  if (pages->token_file) FG_TRY(read_token(ctx, pages->token_file, pages->token));
+  if (pages->token_file)
+    FG_TRY(fg_file_read_token(ctx, pages->token_file, pages->token, FG_CLI_TOKEN_BYTES));
   if (pages->token_file) request->token = pages->token;
   request->hosts = pages->hosts;
   request->ready = print_address;

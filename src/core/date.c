@@ -79,6 +79,20 @@ void fg_date_of_file(const char *path, char day[FG_DATE_DAY]) {
   if (stat(path, &about) == 0) fg_date_of_time(about.st_mtime, day);
 }
 
+void fg_date_format_utc(int64_t seconds, char text[FG_DATE_UTC]) {
+  time_t at = (time_t)seconds;
+  struct tm utc;
+  text[0] = '\0';
+  if (seconds && gmtime_r(&at, &utc)) strftime(text, FG_DATE_UTC, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}
+
+void fg_date_format_stamp(int64_t seconds, char stamp[FG_DATE_STAMP]) {
+  time_t at = (time_t)seconds;
+  struct tm local;
+  stamp[0] = '\0';
+  if (localtime_r(&at, &local)) strftime(stamp, FG_DATE_STAMP, "%Y%m%d-%H%M%S", &local);
+}
+
 double fg_clock_seconds(void) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);

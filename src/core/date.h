@@ -25,6 +25,15 @@ enum { FG_DATE_DAY = 11 };
 void fg_date_of_time(int64_t seconds, char day[FG_DATE_DAY]);
 void fg_date_of_file(const char *path, char day[FG_DATE_DAY]);
 
+/* Sizes of "2026-11-20T13:45:10Z" and "20261120-134510" with their NUL, and room to spare. */
+enum { FG_DATE_UTC = 32, FG_DATE_STAMP = 32 };
+
+/* Writes a time in seconds since 1970 as ISO 8601, UTC; "" for 0. */
+void fg_date_format_utc(int64_t seconds, char text[FG_DATE_UTC]);
+
+/* Writes local time for names of files, which sort by it; "" where there is none. */
+void fg_date_format_stamp(int64_t seconds, char stamp[FG_DATE_STAMP]);
+
 /* Returns the seconds of a clock that nobody sets, since a fixed moment before the machine's start.
  */
 double fg_clock_seconds(void);

@@ -287,6 +287,16 @@ fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char 
   return status;
 }
 
+fg_status fg_file_read_token(fg_context *ctx, const char *path, char *token, int size) {
+  FILE *file = fopen(path, "re");
+  if (!file) return fg_fail(ctx, FG_ERR_IO, "%.600s: cannot be opened: %s", path, strerror(errno));
+  char *line = fgets(token, size, file);
+  fclose(file);
+  if (!line) return fg_fail(ctx, FG_ERR_DATA, "%.600s: there is no token in it", path);
+  token[strcspn(token, " \t\r\n")] = '\0';
+  return FG_OK;
+}
+
 /* An earlier write may have failed, whose errno is lost. */
 fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what) {
   bool failed = ferror(out) != 0;

@@ -53,8 +53,8 @@ static void add_pose_scan(const grid_problem *problem, const strip_mean means[ST
   }
 }
 
-/* n scans of a pose share what their marks, effects and map have in common: deviations from their
- * mean have n - 1 degrees of freedom. */
+/* Deviations of n scans of a pose from their mean have n - 1 degrees of freedom: the scans share
+ * what their marks, effects and map have in common. */
 static void add_pose(const carriage_sums *sums, double *square, double *dof) {
   for (size_t k = 0; k < STRIPS_MAX; k++) {
     double n = sums->over_scans[k].count, sum = sums->over_scans[k].sum;

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/date.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -311,7 +312,7 @@ fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop) {
   fg_scanner_model *model = loop->model;
   if (loop->options.scanner)
     fg_text_clip(model->scanner, sizeof model->scanner, "%s", loop->options.scanner);
-  fg_scanner_model_format_date(loop->options.date, model->date);
+  fg_date_format_utc(loop->options.date, model->date);
   for (int axis = 0; axis < 2; axis++)
     model->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
   model->scans = loop->scan_count;

@@ -48,9 +48,6 @@ fg_status fg_scanner_model_write(fg_context *ctx, const fg_scanner_model *model,
 /* FG_ERR_DATA for a picture that spoils edges in a way that no model describes. */
 fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *m);
 
-/* Date of a model, from seconds since 1970; "" for 0. */
-void fg_scanner_model_format_date(int64_t seconds, char text[FG_MODEL_DATE]);
-
 /* Takes the temperature that a design states of the part. */
 void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_scanner_model *model);
 

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "core/date.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -13,13 +13,6 @@
 #include "scan_loop/state.h"
 
 /* ---- the model of a loop ---- */
-
-void fg_scanner_model_format_date(int64_t seconds, char text[FG_MODEL_DATE]) {
-  time_t at = (time_t)seconds;
-  struct tm utc;
-  text[0] = 0;
-  if (seconds && gmtime_r(&at, &utc)) strftime(text, FG_MODEL_DATE, "%Y-%m-%dT%H:%M:%SZ", &utc);
-}
 
 /* Returns the number of known diameters that determined the absolute scale; 0 where they could not
  * have detected an error of it. */
@@ -44,7 +37,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
   if (loop->options.scanner)
     fg_text_clip(made->scanner, sizeof made->scanner, "%s", loop->options.scanner);
-  fg_scanner_model_format_date(loop->options.date, made->date);
+  fg_date_format_utc(loop->options.date, made->date);
   const fg_measurement *first = &loop->before[0];
   for (int axis = 0; axis < 2; axis++) /* resolution stated by the scan */
     made->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);

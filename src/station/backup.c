@@ -10,13 +10,14 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/file.h"
 #include "lot/run/folder_lock.h"
 #include "station/recovery.h"
 
-enum { STAMP_BYTES = 32, TURN_S = 60, HOUR_S = 3600, DAY_S = 86400 };
+enum { TURN_S = 60, HOUR_S = 3600, DAY_S = 86400 };
 
 static const char name_before[] = "foilgauge-", name_after[] = ".sqlite";
 
@@ -111,17 +112,11 @@ static fg_status renew_identity(fg_context *ctx, const char *path) {
   return status;
 }
 
-static void format_stamp(time_t at, char stamp[STAMP_BYTES]) {
-  struct tm local;
-  localtime_r(&at, &local);
-  strftime(stamp, STAMP_BYTES, "%Y%m%d-%H%M%S", &local);
-}
-
 /* The database that is there, with its journals, gets another name. */
 static fg_status move_away(fg_context *ctx, const char *database) {
   static const char *const endings[] = {"-wal", "-shm", ""};
-  char stamp[STAMP_BYTES];
-  format_stamp(time(NULL), stamp);
+  char stamp[FG_DATE_STAMP];
+  fg_date_format_stamp(time(NULL), stamp);
   for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
     char *from = NULL, *to = NULL;
     fg_status status = fg_text_print(ctx, &from, "%s%s", database, endings[i]);
@@ -200,11 +195,11 @@ static time_t inspect_folder(const fg_station_backup *settings) {
 }
 
 static fg_status write_scheduled(fg_context *ctx, const fg_inspection *station) {
-  char stamp[STAMP_BYTES], *path = NULL;
+  char stamp[FG_DATE_STAMP], *path = NULL;
   const fg_station_backup *settings = &station->settings->backup;
   if (mkdir(settings->folder, 0755) != 0 && errno != EEXIST)
     return fg_output_fail(ctx, settings->folder, errno);
-  format_stamp(time(NULL), stamp);
+  fg_date_format_stamp(time(NULL), stamp);
   FG_TRY(fg_text_print(ctx, &path, "%s/%s%s%s", settings->folder, name_before, stamp, name_after));
   fg_status status = fg_backup_write(ctx, station->request->folder, path);
   free(path);

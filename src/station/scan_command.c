@@ -88,11 +88,10 @@ static void find_order_part(fg_inspection *station, char order[ORDER_BYTES]) {
  * anything in, quoted by the recipe or not. */
 static void choose_names(scanner *at) {
   struct timespec now;
-  struct tm local = {0};
-  char stamp[40] = "", order[ORDER_BYTES] = "";
+  char stamp[FG_DATE_STAMP], order[ORDER_BYTES] = "";
   if (!at->check) find_order_part(at->station, order);
   clock_gettime(CLOCK_REALTIME, &now);
-  if (localtime_r(&now.tv_sec, &local)) strftime(stamp, 20, "%Y%m%d-%H%M%S", &local);
+  fg_date_format_stamp(now.tv_sec, stamp);
   fg_text_clip(at->final, sizeof at->final, "%s%s-%03d%s%s.%s", at->check ? CHECK_PREFIX : PREFIX,
                stamp, (int)(now.tv_nsec / 1000000), order[0] ? "-" : "", order,
                ending_for(at->station->settings->scan_command));

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/date.h"
 #include "core/json_read.h"
 #include "core/member_read.h"
 #include "core/memory.h"
@@ -48,13 +49,6 @@ static fg_status parse_part(fg_context *ctx, const char *body, fg_hub_part *part
   fg_status status = fg_object_read(&reading, &posted_members, root, part);
   cJSON_Delete(root);
   return status;
-}
-
-static void format_now(time_t before, char text[FG_HUB_TEXT]) {
-  time_t now = time(NULL) - before;
-  struct tm utc;
-  gmtime_r(&now, &utc);
-  strftime(text, FG_HUB_TEXT, "%Y-%m-%dT%H:%M:%SZ", &utc);
 }
 
 static fg_status keep_event(fg_context *ctx, fg_hub_store *store, const fg_hub_part *part,
@@ -102,10 +96,10 @@ static fg_status keep_station(fg_context *ctx, fg_hub_store *store, const fg_hub
 
 static fg_status keep_rows(fg_context *ctx, fg_hub_store *store, const fg_hub_part *part,
                            const char *body, bool *known) {
-  char event[FG_HUB_NUMBER], foil[FG_HUB_NUMBER], now[FG_HUB_TEXT];
+  char event[FG_HUB_NUMBER], foil[FG_HUB_NUMBER], now[FG_DATE_UTC];
   snprintf(event, sizeof event, "%zu", part->event);
   snprintf(foil, sizeof foil, "%zu", part->foil);
-  format_now(0, now);
+  fg_date_format_utc(time(NULL), now);
   FG_TRY(keep_event(ctx, store, part, event, now, body, known));
   if (*known) return FG_OK;
   FG_TRY(keep_newest(ctx, store, part, event, foil));
@@ -134,8 +128,8 @@ static size_t read_count(const fg_hub_rows *rows, size_t row, size_t column) {
 static fg_status read_stations(fg_context *ctx, fg_hub *hub, fg_hub_state *state) {
   fg_hub_rows rows;
   void *block;
-  char since[FG_HUB_TEXT];
-  format_now(24 * 3600, since);
+  char since[FG_DATE_UTC];
+  fg_date_format_utc(time(NULL) - 24 * 3600, since);
   const char *const values[] = {since};
   FG_TRY(fg_hub_store_run(
       ctx, &hub->store,

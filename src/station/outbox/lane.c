@@ -1,29 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "station/outbox/lane.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/file.h"
 
 /* The row of a receiver: the event it got last, and one that is prepared for it. */
 typedef struct cursor {
   int64_t passed, prepared, next; /* next 0: none */
   char serial[FG_PART_NAME], kind[16], source[FG_PART_KEY];
 } cursor;
-
-static fg_status read_token(fg_context *ctx, const char *path, char token[FG_LANE_TOKEN]) {
-  token[0] = '\0';
-  if (!path[0]) return FG_OK;
-  FILE *file = fopen(path, "re");
-  if (!file) return fg_fail(ctx, FG_ERR_IO, "%.600s: cannot be opened: %s", path, strerror(errno));
-  char *line = fgets(token, FG_LANE_TOKEN, file);
-  fclose(file);
-  if (!line) return fg_fail(ctx, FG_ERR_DATA, "%.600s: there is no token in it", path);
-  token[strcspn(token, " \t\r\n")] = '\0';
-  return FG_OK;
-}
 
 /* Makes the receiver's row, unless it has one. */
 static fg_status insert_row(fg_context *ctx, fg_lane *lane) {
@@ -45,7 +33,8 @@ fg_status fg_lane_begin(fg_context *ctx, fg_lane *lane) {
   static const char *const words[] = {"json", "csv", "bumps_csv", "dfq", "qif"};
   const fg_station_destination *destination = lane->destination;
   FG_TRY(fg_transport_find(ctx, destination->to, &lane->transport));
-  FG_TRY(read_token(ctx, destination->token_file, lane->token));
+  if (destination->token_file[0])
+    FG_TRY(fg_file_read_token(ctx, destination->token_file, lane->token, FG_LANE_TOKEN));
   fg_text_clip(lane->name, sizeof lane->name, "%s %s", words[destination->format], destination->to);
   return insert_row(ctx, lane);
 }
