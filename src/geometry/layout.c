@@ -7,12 +7,15 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/select.h"
 
-enum { GROW_ROUNDS = 3, LAND_POINTS_MIN = 24 };
+enum { GROW_ROUNDS = 3, LAND_POINTS_MIN = 24, GAPS_MAX = 512 };
 /* Limits of an arc's end inside and outside the turning point, and its place beyond them. */
 #define END_EARLY_MM  0.30
 #define END_LATE_MM   0.12
 #define END_INSIDE_MM 0.12
+/* A gap that is longer than this many usual ones has an empty place. */
+#define LONG_GAP 1.5
 
 /* Bounds of the stretches between bumps, and beyond the outer two: the places of lands. */
 static fg_range gap_bounds(const fg_layout *layout, size_t i) {
@@ -36,12 +39,38 @@ static fg_range middle_part(fg_range range, double share) {
   return (fg_range){range.first + inset, range.last - inset};
 }
 
+/* Stations between neighbouring bumps: the lower quartile, or by the design's pitch, which keeps
+ * its length along the strip, if that is less. */
+static double usual_gap(const fg_layout *layout, const fg_design *design) {
+  double gaps[GAPS_MAX], bumps[GAPS_MAX];
+  size_t count = 0;
+  for (size_t i = 1; i < layout->turning.bump_count && count < GAPS_MAX; i++, count++) {
+    const fg_range gap = gap_bounds(layout, i);
+    gaps[count] = (double)(gap.last - gap.first);
+    bumps[count] = (double)(layout->turning.bumps[i].last - gap.last);
+  }
+  if (!count) return 0;
+  double pitch_mm = design->bumps.pitch_deg * M_PI / 180 * design->overall_radius_mm;
+  double designed =
+      pitch_mm / layout->line.strip->step_mm - fg_select(bumps, count, (count - 1) / 2);
+  double usual = fg_select(gaps, count, (count - 1) / 4);
+  return designed > LAND_POINTS_MIN ? fmin(usual, designed) : usual;
+}
+
+/* The part of a gap that is as long as the usual one and nearest to its first bump: where the gap
+ * is longer, a bump between may be too flat to be seen. */
+static fg_range nearest_land(fg_range gap, double usual) {
+  if ((double)(gap.last - gap.first) > LONG_GAP * usual) gap.last = gap.first + (size_t)usual;
+  return gap;
+}
+
 /* A first overall circle through the middles of the gaps between bumps; with fewer than three
  * bumps the end lands help. */
-static fg_status start_overall(fg_context *ctx, fg_layout *layout) {
+static fg_status start_overall(fg_context *ctx, const fg_design *design, fg_layout *layout) {
   size_t bumps = layout->turning.bump_count, n = 0;
+  double usual = usual_gap(layout, design);
   for (size_t i = 1; i < bumps; i++)
-    layout->lands[n++] = middle_part(gap_bounds(layout, i), 0.25);
+    layout->lands[n++] = middle_part(nearest_land(gap_bounds(layout, i), usual), 0.25);
   for (size_t end = 0; end < 2 && bumps < 4; end++) {
     fg_range gap = gap_bounds(layout, end ? bumps : 0);
     if (gap.last > gap.first + 40) layout->lands[n++] = middle_part(gap, 0.3);
@@ -120,8 +149,9 @@ static fg_status fit_bump(fg_context *ctx, void *shared, size_t i) {
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-static fg_status fit_overall(fg_context *ctx, fg_layout *layout, const char **error) {
-  fg_status status = start_overall(ctx, layout);
+static fg_status fit_overall(fg_context *ctx, const fg_design *design, fg_layout *layout,
+                             const char **error) {
+  fg_status status = start_overall(ctx, design, layout);
   for (int round = 0; round < GROW_ROUNDS && status == FG_OK; round++) {
     regrow_lands(layout);
     if (!layout->land_count) break;
@@ -155,7 +185,7 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(fg_arc), (void **)&layout->bumps));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(bool), (void **)&layout->fitted));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps + 2, sizeof(fg_range), (void **)&layout->lands));
-  FG_TRY_EXIT(fit_overall(ctx, layout, error));
+  FG_TRY_EXIT(fit_overall(ctx, design, layout, error));
   if (!*error) FG_TRY_EXIT(fg_parallel_run(ctx, threads, bumps, fit_bump, layout));
 exit:
   if (status != FG_OK) fg_layout_free(layout);

@@ -16,7 +16,9 @@ static const fg_flag_words foil_flags[] = {
      "Something else touches the foil: what lies at that place may be wrong."},
     {FG_FOIL_NO_LIP, "no_lip", "No lip was found: the bumps are numbered clockwise as seen."},
     {FG_FOIL_BUMP_COUNT, "bump_count", "The number of bumps is not the one the design states."},
-    {FG_FOIL_MISSING_BUMP, "missing_bump", "A place where a bump belongs is empty."},
+    {FG_FOIL_MISSING_BUMP, "missing_bump",
+     "A place where a bump belongs is empty, or its bump is crushed to a third of its height or "
+     "less."},
     {FG_FOIL_FEW_LANDS, "few_lands",
      "The overall circle rests on few lands: what follows from it is less certain."},
     {FG_FOIL_CLIPPED, "clipped",
