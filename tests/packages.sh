@@ -9,7 +9,7 @@ libopencv-core-dev libopencv-imgproc-dev libsuitesparse-dev libsundials-dev libs
 FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"
 
 # Only the long tests need them: regression is compared with R's, and the loop is tried on tables that come with R.
-FOILGAUGE_R_PACKAGES="r-base-core r-cran-mass r-cran-lattice r-cran-boot r-cran-nlme"
+FOILGAUGE_R_PACKAGES="r-base-core r-cran-mass r-cran-lattice r-cran-boot r-cran-nlme r-cran-lme4 r-cran-pbkrtest"
 
 # Only long tests need them, and builds with MQTT and PostgreSQL: without them a station has neither.
 FOILGAUGE_SHOP_PACKAGES="libmosquitto-dev mosquitto libpq-dev postgresql"

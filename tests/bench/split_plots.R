@@ -1,4 +1,4 @@
-# Split plots by lme4, lmerTest and pbkrtest: variances, coefficients with Kenward and Roger's error and freedom, tests
+# Split plots by lme4, nlme and pbkrtest: variances, coefficients with Kenward and Roger's error and freedom, tests
 # of the terms. Rscript split_plots.R FOLDER: reads FOLDER/plans.txt (file, factors in words, fixed part) and writes
 # FOLDER/reference.csv.
 suppressMessages({
