@@ -23,7 +23,9 @@
  * response (Lund 1968): force = -(K + i nu omega C) displacement. The rotor is on the border of
  * stability where an eigenvalue of this impedance is real: then it is M (nu omega)², M the critical
  * mass (Pan 1964), and every heavier rotor whirls. The threshold speed is the lowest at which the
- * rotor's mass is critical.
+ * rotor's mass is critical. Beside it stand the eigenvalues of the rotor on its film, M s² + Z(s)
+ * = 0: on the border both methods have the same s, away from it the eigenvalues tell how fast a
+ * whirl decays or grows.
  */
 #ifndef FOILGAUGE_FILM_H
 #define FOILGAUGE_FILM_H
@@ -43,7 +45,12 @@ typedef enum fg_film_top {
   FG_FILM_SAGGING, /* a beam on the bumps */
 } fg_film_top;
 
-enum { FG_FILM_FREQUENCIES = 21, FG_FILM_SPEEDS_MAX = 200, FG_FILM_TURNS_MAX = 10000 };
+enum {
+  FG_FILM_FREQUENCIES = 21,
+  FG_FILM_MODES = 4,
+  FG_FILM_SPEEDS_MAX = 200,
+  FG_FILM_TURNS_MAX = 10000
+};
 
 typedef struct fg_film_options {
   double load_n, load_deg, speed_rpm; /* load_n, speed_rpm above 0 */
@@ -121,6 +128,7 @@ typedef struct fg_film_result {
   double min_film_um, min_film_deg, max_pressure_kpa, power_w;
   double critical_mass_kg;  /* infinite: stable at every mass */
   double whirl_ratio;       /* of the whirl at the critical mass, over the speed */
+  double log_decrement;     /* of the rotor's least stable whirl; NaN: not asked, or none */
   double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
   fg_film_side side;
   size_t draw; /* its number, from 1; 0: no drawn bearing */
@@ -131,6 +139,17 @@ typedef struct fg_film_coefficients {
   double whirl_ratio, frequency_hz;
   double stiffness_n_um[4], damping_n_s_mm[4];
 } fg_film_coefficients;
+
+typedef enum fg_film_direction { FG_FILM_FORWARD, FG_FILM_BACKWARD } fg_film_direction;
+extern const char *const fg_film_direction_words[]; /* "forward", "backward", NULL */
+
+/* A whirl of the rotor on its film by itself: an eigenvalue of both. */
+typedef struct fg_film_mode {
+  double whirl_ratio, frequency_hz;
+  double log_decrement; /* of the amplitude, from whirl to whirl; below 0 it grows */
+  double damping_ratio; /* less the real part over the size of the eigenvalue */
+  fg_film_direction direction;
+} fg_film_mode;
 
 /* A line of nodes across the film. */
 typedef struct fg_film_column {
@@ -239,7 +258,10 @@ typedef struct fg_film_report {
   size_t frequencies; /* 0 where unsolved */
   fg_film_result *speed;
   size_t speeds;
-  double threshold_rpm; /* NaN: not within the speeds */
+  double threshold_rpm;             /* NaN: not within the speeds */
+  double threshold_eigen_rpm;       /* by the least stable eigenvalue; NaN likewise */
+  fg_film_mode mode[FG_FILM_MODES]; /* at this speed, the least stable one first */
+  size_t modes;
   /* Largest load at this speed, and lowest speed under this load, with a film of touching_um at
    * least; NaN: not found, or it touches already. */
   double load_capacity_n, lift_off_rpm;

@@ -313,13 +313,9 @@ static void check_film_end(film_run *run, struct argp_state *state) {
     argp_error(state, "--compliance states what --model would find: drop one");
 }
 
-static void read_film_shard(film_run *run, struct argp_state *state, const char *text) {
-  double n[3];
-  if (split_numbers(text, '/', n) != 2 || !(n[0] >= 1 && n[0] <= n[1] && n[1] <= 1e6) ||
-      n[0] != floor(n[0]) || n[1] != floor(n[1]))
-    argp_error(state, "--shard: '%s' is not I/N with I from 1 to N", text);
-  run->options.shard = (size_t)n[0];
-  run->options.shards = (size_t)n[1];
+static void take_film_shard(film_run *run, fg_lot_shard shard) {
+  run->options.shard = shard.index;
+  run->options.shards = shard.count;
 }
 
 static error_t parse_film_option(int key, char *text, struct argp_state *state) {
@@ -335,7 +331,7 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     run->options.keep = text;
     return 0;
   case OPTION_SHARD:
-    read_film_shard(run, state, text);
+    take_film_shard(run, fg_cli_shard(state, text));
     return 0;
   case OPTION_MODEL:
     run->options.model = text;

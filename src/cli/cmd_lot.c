@@ -102,15 +102,6 @@ static const char doc[] =
     "bearings are drawn from the foils, to see how many would assemble; 0 draws none.\n\n"
     "@exit_judged@ A shard is not judged: 0 or 2.";
 
-static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
-  unsigned long long index, count;
-  char rest;
-  if (text[0] == '-' || sscanf(text, "%llu/%llu%c", &index, &count, &rest) != 2 || index < 1 ||
-      index > count || count > 1000000000ULL)
-    argp_error(state, "--shard: '%s' is not i/n with i from 1 to n", text);
-  return (fg_lot_shard){(size_t)index, (size_t)count};
-}
-
 static fg_lot_pages parse_pages(struct argp_state *state, const char *text) {
   for (int pages = FG_LOT_PAGES_ALL; pages <= FG_LOT_PAGES_NONE; pages++)
     if (!strcmp(text, fg_lot_pages_word((fg_lot_pages)pages))) return (fg_lot_pages)pages;
@@ -173,7 +164,7 @@ static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
     arguments->dry_run = true;
     break;
   case OPTION_SHARD:
-    arguments->shard = parse_shard(state, text);
+    arguments->shard = fg_cli_shard(state, text);
     break;
   case OPTION_PAGES:
     arguments->pages = parse_pages(state, text);

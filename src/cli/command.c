@@ -47,3 +47,15 @@ double fg_cli_number(struct argp_state *state, const char *name, const char *tex
     argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
   return value;
 }
+
+fg_lot_shard fg_cli_shard(struct argp_state *state, const char *text) {
+  static const char digits[] = "0123456789";
+  unsigned long long index = 0, count = 0;
+  size_t before = strspn(text, digits), behind = 0;
+  if (before && text[before] == '/') behind = strspn(text + before + 1, digits);
+  bool known = behind && !text[before + 1 + behind] && before < 19 && behind < 19 &&
+               sscanf(text, "%llu/%llu", &index, &count) == 2;
+  if (!known || index < 1 || index > count || count > FG_CLI_SHARDS_MAX)
+    argp_error(state, "--shard: '%s' is not I/N with I from 1 to N", text);
+  return (fg_lot_shard){(size_t)index, (size_t)count};
+}

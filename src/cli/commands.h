@@ -72,6 +72,10 @@ fg_status fg_cli_parse_in_order(fg_context *ctx, const struct argp *parser, int 
 double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,
                      double highest);
 
+enum { FG_CLI_SHARDS_MAX = 1000000000 };
+/* Reads "I/N", a part of N parts, of --shard; ends the program where it is none. */
+fg_lot_shard fg_cli_shard(struct argp_state *state, const char *text);
+
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);
 

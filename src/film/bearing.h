@@ -101,7 +101,16 @@ void fg_film_add_bore(const fg_film_report *report, fg_film_bearing *bearing);
 fg_status fg_film_follow_orbit(fg_context *ctx, fg_film_report *report,
                                fg_film_workspace *workspace);
 
-/* Fills the stability map and finds the threshold. */
+/* Finds the whirls of the rotor on the workspace's solved bearing. */
+typedef struct fg_film_modes {
+  fg_film_mode mode[FG_FILM_MODES];
+  size_t count;
+} fg_film_modes;
+fg_status fg_film_find_modes(fg_context *ctx, const fg_film_report *report,
+                             fg_film_workspace *workspace, fg_film_result *result,
+                             fg_film_modes *modes);
+
+/* Fills the stability map and finds the thresholds. */
 fg_status fg_film_map_speeds(fg_context *ctx, fg_film_report *report, fg_film_workspace *workspace);
 
 #endif

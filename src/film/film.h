@@ -26,6 +26,7 @@
 #define FG_FILM_FILM_H
 
 #include "film/sparse.h"
+#include "foilgauge/film.h"
 
 typedef struct fg_film_mesh {
   size_t pads, cells, axial; /* cells of a pad along the rotation; of half the length */
@@ -110,10 +111,17 @@ fg_status fg_film_follow(fg_context *ctx, fg_film *film, const fg_film_case *fro
 fg_status fg_film_solve(fg_context *ctx, fg_film *film, const fg_film_case *at,
                         fg_film_state *state);
 
-/* Impedance of the film against a rotor that whirls at `ratio` times the speed: force over
- * displacement, Z = K + i ratio C. The system must be assembled at the steady state. */
-fg_status fg_film_impedance(fg_context *ctx, fg_film *film, const fg_film_case *at, double ratio,
-                            double complex impedance[2][2]);
+/* Impedance of the film against a rotor that moves as exp(s tau): force over displacement; s = i
+ * ratio of a whirl at `ratio` times the speed, Z = K + i ratio C. The system must be assembled at
+ * the steady state. */
+fg_status fg_film_impedance(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                            double complex s, double complex impedance[2][2]);
+
+enum { FG_FILM_ROOTS = 2 };
+/* Both eigenvalues of the impedance; `near` (may be NULL) keeps their order. */
+fg_status fg_film_eigenvalues(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                              double complex s, const double complex *near,
+                              double complex value[FG_FILM_ROOTS]);
 
 /* The mass (of `M omega² C / (p_a R²)`) at which the rotor on this film begins to whirl, and the
  * ratio of whirl; infinite, and NaN, where none does between the ratios. */
@@ -122,5 +130,18 @@ typedef struct fg_film_threshold {
 } fg_film_threshold;
 fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                  const fg_film_state *state, fg_film_threshold *threshold);
+
+/* Oscillating motions exp(s tau) of a rotor of this mass on its film, the least stable one first:
+ * eigenvalues of film and rotor together. */
+typedef struct fg_film_motion {
+  double complex s; /* its imaginary part above 0 */
+  bool forward;     /* its orbit turns with the rotor */
+} fg_film_motion;
+typedef struct fg_film_motions {
+  fg_film_motion motion[FG_FILM_MODES];
+  size_t count;
+} fg_film_motions;
+fg_status fg_film_find_motions(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                               const fg_film_state *state, double mass, fg_film_motions *motions);
 
 #endif

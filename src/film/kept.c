@@ -89,8 +89,10 @@ static bool read_kept_line(const char *line, fg_film_result *result) {
   if (!length || line[length - 1] != '\n') return false;
   if (sscanf(line, "%lu %u %u%n", &draw, &outcome, &side, &used) != 3) return false;
   if (outcome > FG_FILM_UNSOLVED || side > FG_FILM_ABOVE) return false;
-  *result = (fg_film_result){
-      .outcome = (fg_film_outcome)outcome, .side = (fg_film_side)side, .draw = draw};
+  *result = (fg_film_result){.outcome = (fg_film_outcome)outcome,
+                             .side = (fg_film_side)side,
+                             .draw = draw,
+                             .log_decrement = NAN};
   list_result_numbers(result, numbers);
   const char *at = line + used;
   for (size_t i = 0; numbers[i]; i++) {

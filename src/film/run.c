@@ -29,7 +29,7 @@ static fg_status find_coefficients(fg_context *ctx, fg_film_report *r,
   for (int i = 0; i < FG_FILM_FREQUENCIES; i++) {
     double share = 2. * i / (FG_FILM_FREQUENCIES - 1) - 1, ratio = pow(ratio_span, share);
     double complex z[2][2];
-    FG_TRY(fg_film_impedance(ctx, &workspace->film, &workspace->at, ratio, z));
+    FG_TRY(fg_film_impedance(ctx, &workspace->film, &workspace->at, I * ratio, z));
     put_coefficients(r, ratio, z, &r->frequency[i]);
   }
   r->frequencies = FG_FILM_FREQUENCIES;
@@ -70,6 +70,17 @@ static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_works
                    "speed, or state another clearance or compliance",
                    r->options.load_n, r->options.speed_rpm);
   r->perfect.mass_over_perfect = 1;
+  fg_film_modes unused;
+  return fg_film_find_modes(ctx, r, workspace, &r->perfect, &unused);
+}
+
+/* The rotor's whirls on the bearing, to which the workspace's state belongs. */
+static fg_status find_modes(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
+  fg_film_modes modes;
+  FG_TRY(fg_film_find_modes(ctx, r, workspace, &r->at, &modes));
+  r->modes = modes.count;
+  for (size_t i = 0; i < modes.count; i++)
+    r->mode[i] = modes.mode[i];
   return FG_OK;
 }
 
@@ -95,6 +106,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
     if (r->at.outcome != FG_FILM_UNSOLVED) FG_TRY(fg_film_find_uncertainty(ctx, r, workspace));
   }
   if (r->at.outcome == FG_FILM_UNSOLVED) return FG_OK;
+  FG_TRY(find_modes(ctx, r, workspace));
   FG_TRY(find_coefficients(ctx, r, workspace));
   FG_TRY(keep_field(ctx, r, workspace));
   FG_TRY(fg_film_follow_orbit(ctx, r, workspace));
@@ -108,6 +120,7 @@ fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_op
   *report = (fg_film_report){.design = *design,
                              .options = *options,
                              .threshold_rpm = NAN,
+                             .threshold_eigen_rpm = NAN,
                              .load_capacity_n = NAN,
                              .lift_off_rpm = NAN};
   FG_TRY(fg_film_describe(ctx, report, &report->bearing));

@@ -84,6 +84,7 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report, f
                              .power_w = NAN,
                              .critical_mass_kg = NAN,
                              .whirl_ratio = NAN,
+                             .log_decrement = NAN,
                              .mass_over_perfect = NAN};
   fg_film_case_fill(report, &b->film, bearing, speed_rpm, &b->at);
   result->compressibility = b->at.lambda;

@@ -9,29 +9,53 @@
 enum { REFINEMENTS = 12 };
 static const double speed_close = 1e-4; /* of a threshold, relative */
 
+/* Above 0 where the rotor is stable at a speed. */
+typedef double stability_margin(const fg_film_report *, const fg_film_result *);
+
 /* Logarithm of the critical mass over the rotor's; a film that is stable at every mass counts as
  * one of a very large one, so that a root beside it can be found. */
-static double margin_of(const fg_film_report *r, const fg_film_result *at) {
+static double mass_margin(const fg_film_report *r, const fg_film_result *at) {
   static const double large = 5;
   return fmin(large, log(at->critical_mass_kg / r->options.rotor_mass_kg));
+}
+
+static double damping_margin(const fg_film_report *r, const fg_film_result *at) {
+  (void)r;
+  return at->log_decrement;
 }
 
 /* A bearing over the speed; `speed` is one result per speed of the options. */
 typedef struct speed_map {
   const fg_film_report *report;
   const fg_film_bearing *bearing;
+  bool with_modes;
   fg_film_result *speed;
   size_t speeds;
-  double threshold_rpm;
 } speed_map;
+
+static fg_status solve_speed(fg_context *ctx, const speed_map *map, fg_film_workspace *workspace,
+                             double speed_rpm, fg_film_start start, fg_film_result *at) {
+  fg_film_modes unused;
+  FG_TRY(fg_film_solve_bearing(ctx, map->report, workspace, map->bearing, speed_rpm, start, at));
+  if (!map->with_modes) return FG_OK;
+  return fg_film_find_modes(ctx, map->report, workspace, at, &unused);
+}
+
+/* Two speeds between which the rotor gets unstable. */
+typedef struct speed_interval {
+  const fg_film_result *below, *above;
+  stability_margin *margin;
+} speed_interval;
 
 /* Finds the root of the margin between two speeds by false position on the logarithm of the speed
  * (Illinois). */
-static fg_status refine_threshold(fg_context *ctx, speed_map *map, fg_film_workspace *workspace,
-                                  const fg_film_result *below, const fg_film_result *above) {
+static fg_status refine_threshold(fg_context *ctx, const speed_map *map,
+                                  fg_film_workspace *workspace, const speed_interval *between,
+                                  double *rpm) {
   const fg_film_report *r = map->report;
-  double x[2] = {log(below->speed_rpm), log(above->speed_rpm)};
-  double f[2] = {margin_of(r, below), margin_of(r, above)}, root = x[1];
+  double x[2] = {log(between->below->speed_rpm), log(between->above->speed_rpm)};
+  double f[2] = {between->margin(r, between->below), between->margin(r, between->above)};
+  double root = x[1];
   int side = -1;
   for (int i = 0; i < REFINEMENTS; i++) {
     double next = (x[0] * f[1] - x[1] * f[0]) / (f[1] - f[0]);
@@ -39,15 +63,29 @@ static fg_status refine_threshold(fg_context *ctx, speed_map *map, fg_film_works
     fg_film_result at;
     root = next;
     if (close) break;
-    FG_TRY(fg_film_solve_bearing(ctx, r, workspace, map->bearing, exp(root), FG_FILM_AFRESH, &at));
-    if (at.outcome == FG_FILM_UNSOLVED) return FG_OK;
-    int end = margin_of(r, &at) > 0 ? 0 : 1;
+    FG_TRY(solve_speed(ctx, map, workspace, exp(root), FG_FILM_AFRESH, &at));
+    double margin = between->margin(r, &at);
+    if (isnan(margin)) return FG_OK;
+    int end = margin > 0 ? 0 : 1;
     x[end] = root;
-    f[end] = margin_of(r, &at);
+    f[end] = margin;
     if (side == end) f[1 - end] /= 2;
     side = end;
   }
-  map->threshold_rpm = exp(root);
+  *rpm = exp(root);
+  return FG_OK;
+}
+
+/* The lowest speed of the map at which a margin vanishes; NaN where none does. */
+static fg_status find_threshold(fg_context *ctx, const speed_map *map, fg_film_workspace *workspace,
+                                stability_margin *margin, double *rpm) {
+  *rpm = NAN;
+  for (size_t i = 1; i < map->speeds; i++) {
+    const speed_interval between = {&map->speed[i - 1], &map->speed[i], margin};
+    if (!(margin(map->report, between.below) > 0) || !(margin(map->report, between.above) <= 0))
+      continue;
+    return refine_threshold(ctx, map, workspace, &between, rpm);
+  }
   return FG_OK;
 }
 
@@ -63,33 +101,29 @@ static fg_status solve_speed_map(fg_context *ctx, speed_map *map, fg_film_worksp
   for (size_t i = map->speeds; i-- > 0;) {
     double share = map->speeds > 1 ? (double)i / (double)(map->speeds - 1) : 0;
     double speed = o->speed_low_rpm * pow(o->speed_high_rpm / o->speed_low_rpm, share);
-    FG_TRY(fg_film_solve_bearing(ctx, map->report, workspace, map->bearing, speed, start,
-                                 &map->speed[i]));
+    FG_TRY(solve_speed(ctx, map, workspace, speed, start, &map->speed[i]));
     start = map->speed[i].outcome == FG_FILM_UNSOLVED ? FG_FILM_AFRESH : FG_FILM_ONWARD;
-  }
-  for (size_t i = 1; i < map->speeds; i++) {
-    const fg_film_result *below = &map->speed[i - 1], *above = &map->speed[i];
-    if (!(margin_of(map->report, below) > 0) || !(margin_of(map->report, above) <= 0)) continue;
-    return refine_threshold(ctx, map, workspace, below, above);
   }
   return FG_OK;
 }
 
 fg_status fg_film_map_speeds(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
-  speed_map map = {.report = r, .bearing = &r->bearing, .threshold_rpm = NAN};
+  speed_map map = {.report = r, .bearing = &r->bearing, .with_modes = true};
   fg_status status = solve_speed_map(ctx, &map, workspace);
   r->speed = map.speed;
   r->speeds = map.speeds;
-  r->threshold_rpm = map.threshold_rpm;
-  return status;
+  FG_TRY(status);
+  FG_TRY(find_threshold(ctx, &map, workspace, damping_margin, &r->threshold_eigen_rpm));
+  map.with_modes = false;
+  return find_threshold(ctx, &map, workspace, mass_margin, &r->threshold_rpm);
 }
 
 fg_status fg_film_find_threshold_speed(fg_context *ctx, const fg_film_report *r,
                                        fg_film_workspace *workspace, const fg_film_bearing *bearing,
                                        double *rpm) {
-  speed_map map = {.report = r, .bearing = bearing, .threshold_rpm = NAN};
+  speed_map map = {.report = r, .bearing = bearing};
   fg_status status = solve_speed_map(ctx, &map, workspace);
-  *rpm = map.threshold_rpm;
+  if (status == FG_OK) status = find_threshold(ctx, &map, workspace, mass_margin, rpm);
   free(map.speed);
   return status;
 }

@@ -12,7 +12,7 @@
 /* Ratios of whirl that are searched: gas films whirl near one half of the speed, foils with
  * stiffness of their own below. */
 static const double ratio_low = 0.02, ratio_high = 1.5;
-enum { RATIOS = 14, REFINEMENTS = 20, ROOTS = 2 };
+enum { RATIOS = 14, REFINEMENTS = 20 };
 static const double ratio_close = 1e-7;
 
 static void force_of_response(const fg_film *film, const double complex *vector,
@@ -29,11 +29,11 @@ static void force_of_response(const fg_film *film, const double complex *vector,
 }
 
 /* Matrix of the response at exp(s tau): J + s T + i gamma S, S the springs of the bumps. */
-static fg_status respond(fg_context *ctx, fg_film *film, double loss, double complex s,
-                         double complex impedance[2][2]) {
+fg_status fg_film_impedance(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                            double complex s, double complex impedance[2][2]) {
   size_t size = (size_t)film->sparse.size;
   for (size_t k = 0; k < film->sparse.entries; k++)
-    film->whirl[k] = film->matrix[k] + s * film->time[k] + I * loss * film->lossy[k];
+    film->whirl[k] = film->matrix[k] + s * film->time[k] + I * at->loss * film->lossy[k];
   for (size_t l = 0; l < 2; l++)
     for (size_t k = 0; k < size; k++)
       film->response[l * size + k] = -film->shift[l][k] - s * film->shift_time[l][k];
@@ -47,25 +47,18 @@ static fg_status respond(fg_context *ctx, fg_film *film, double loss, double com
   }
   return FG_OK;
 }
-
-fg_status fg_film_impedance(fg_context *ctx, fg_film *film, const fg_film_case *at, double ratio,
-                            double complex impedance[2][2]) {
-  return respond(ctx, film, at->loss, I * ratio, impedance);
-}
-
-static void find_eigenvalues(double complex z[2][2], double complex value[ROOTS]) {
+static void find_eigenvalues(double complex z[2][2], double complex value[FG_FILM_ROOTS]) {
   double complex mean = (z[0][0] + z[1][1]) / 2;
   double complex root = csqrt((z[0][0] - z[1][1]) * (z[0][0] - z[1][1]) / 4 + z[0][1] * z[1][0]);
   value[0] = mean + root;
   value[1] = mean - root;
 }
 
-/* Both eigenvalues at a ratio; `near` (may be NULL) keeps their order. */
-static fg_status eigenvalues_at(fg_context *ctx, fg_film *film, const fg_film_case *at,
-                                double ratio, const double complex *near,
-                                double complex value[ROOTS]) {
+fg_status fg_film_eigenvalues(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                              double complex s, const double complex *near,
+                              double complex value[FG_FILM_ROOTS]) {
   double complex z[2][2];
-  FG_TRY(fg_film_impedance(ctx, film, at, ratio, z));
+  FG_TRY(fg_film_impedance(ctx, film, at, s, z));
   find_eigenvalues(z, value);
   if (!near) return FG_OK;
   double kept = cabs(value[0] - near[0]) + cabs(value[1] - near[1]);
@@ -81,19 +74,20 @@ static fg_status eigenvalues_at(fg_context *ctx, fg_film *film, const fg_film_ca
 /* A stretch of ratios in which the imaginary part of eigenvalue `root` changes its sign. */
 typedef struct crossing {
   double low, high;
-  double complex at_low[ROOTS], at_high[ROOTS];
+  double complex at_low[FG_FILM_ROOTS], at_high[FG_FILM_ROOTS];
   int root;
 } crossing;
 
 /* Narrows it by false position (Illinois). */
 static fg_status refine_crossing(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                  crossing *c, fg_film_threshold *found) {
-  double complex middle[ROOTS] = {0};
+  double complex middle[FG_FILM_ROOTS] = {0};
   double f_low = cimag(c->at_low[c->root]), f_high = cimag(c->at_high[c->root]), ratio = c->low;
   int side = 0;
   for (int i = 0; i < REFINEMENTS; i++) {
     ratio = (c->low * f_high - c->high * f_low) / (f_high - f_low);
-    FG_TRY(eigenvalues_at(ctx, film, at, ratio, side > 0 ? c->at_high : c->at_low, middle));
+    FG_TRY(
+        fg_film_eigenvalues(ctx, film, at, I * ratio, side > 0 ? c->at_high : c->at_low, middle));
     double f = cimag(middle[c->root]);
     bool above = (f > 0) == (f_high > 0);
     double moved = above ? c->high - ratio : ratio - c->low;
@@ -105,7 +99,7 @@ static fg_status refine_crossing(fg_context *ctx, fg_film *film, const fg_film_c
       if (side == -1) f_high /= 2;
     }
     side = above ? 1 : -1;
-    for (int k = 0; k < ROOTS; k++)
+    for (int k = 0; k < FG_FILM_ROOTS; k++)
       (above ? c->at_high : c->at_low)[k] = middle[k];
     if (fabs(moved) < ratio_close * ratio || f == 0) break;
   }
@@ -116,14 +110,14 @@ static fg_status refine_crossing(fg_context *ctx, fg_film *film, const fg_film_c
 
 fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                  const fg_film_state *state, fg_film_threshold *threshold) {
-  double complex before[ROOTS] = {0}, now[ROOTS];
+  double complex before[FG_FILM_ROOTS] = {0}, now[FG_FILM_ROOTS];
   double ratio_before = ratio_low;
   *threshold = (fg_film_threshold){INFINITY, NAN};
   fg_film_assemble(ctx, film, at, state);
   for (int i = 0; i < RATIOS; i++) {
     double ratio = ratio_low * pow(ratio_high / ratio_low, (double)i / (RATIOS - 1));
-    FG_TRY(eigenvalues_at(ctx, film, at, ratio, i ? before : NULL, now));
-    for (int k = 0; k < ROOTS && i; k++) {
+    FG_TRY(fg_film_eigenvalues(ctx, film, at, I * ratio, i ? before : NULL, now));
+    for (int k = 0; k < FG_FILM_ROOTS && i; k++) {
       if (!(cimag(before[k]) < 0 && cimag(now[k]) >= 0)) continue;
       crossing c = {ratio_before, ratio, {before[0], before[1]}, {now[0], now[1]}, k};
       fg_film_threshold found;

@@ -34,7 +34,7 @@ bearing counts as converged: **its counts cannot be held against these**, its or
 - A film in time has the threshold of the frequency domain within 0.1 %. The mesh of 4,6 is 2.1 % from the finest for the critical mass.
 """
 
-LOADS, SPEEDS = {2: 1, 5: 1, 10: 0.3}, (30000, 60000, 120000)  # loads with their share of the bearings
+LOADS, SPEEDS = (2, 5, 10), (30000, 60000, 120000)
 PADS = ["--pads", "3", "--bumps", "7"]
 
 
@@ -73,11 +73,11 @@ HEAD = ("| shims | load, N | speed, 1000 rpm | solved | touching | more stable |
 
 def draw_table(program, draws, kept):
     print(HEAD)
-    for load, part in LOADS.items():
+    for load in LOADS:
         for speed in SPEEDS:
             for name, shims in DESIGNS.items():
                 report, seconds = film(program, *BEARING, *PADS, "--load", load, "--speed", speed, "--speeds",
-                                       f"{speed}:{speed * 1.01}:2", f"--shims={shims}", "--draws", round(part * draws), "--jobs", 1)
+                                       f"{speed}:{speed * 1.01}:2", f"--shims={shims}", "--draws", draws, "--jobs", 1)
                 kept[name, load, speed] = report
                 print(draw_row(name, load, speed, report, seconds), flush=True)
 
@@ -124,7 +124,7 @@ def main():
     mesh_table(program)
     print("\n## The threshold in time\n\nFilm and rotor integrated together over 60 turns (mesh 2,4):\n")
     orbit_table(program)
-    print(f"\n## Random shims\n\n{draws} bearings a row under 2 and 5 N, three tenths of them under 10 N.\n")
+    print(f"\n## Random shims\n\n{draws} bearings a row.\n")
     draw_table(program, draws, kept)
     print("\nThe bearing without shims:\n")
     perfect_table(kept)

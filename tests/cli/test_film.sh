@@ -35,6 +35,27 @@ assert 0.1 < d["mass_over_perfect"]["at_5_pct"] < 1 < d["mass_over_perfect"]["at
 assert r["coefficients"][10]["whirl_ratio"] == 1
 END
 
+# Eigenvalues of rotor and film: the least stable one crosses at the threshold of the critical mass, which is solved for to 1e-4, as is
+# theirs; it grows where the rotor is heavier than that, and the whirl is that of the critical mass beside the threshold.
+expect 0 "whirls of the rotor on its film" "$program" film design.json --load 20 --speed 14000 --clearance 32 --compliance 0.67 --mass 0.3 \
+  --speeds 8000:40000:12 --mesh 2,4 -o whirls.json --html whirls.html --table -
+valid film.schema.json whirls.json
+grep -q 'Whirls of the rotor on its film' whirls.html || fail "the page lacks the whirls"
+checks - whirls.json <<'END' || fail "eigenvalues"
+import json, math, sys
+r = json.load(open(sys.argv[1]))
+assert 12000 < r["threshold_rpm"] < 16000 and abs(r["threshold_eigen_rpm"] / r["threshold_rpm"] - 1) < 2e-4, r
+for speed in [r["bearing"], *r["speeds"]]:
+    assert (speed["log_decrement"] > 0) == (speed["stability"] == "stable"), speed
+least = r["eigenvalues"][0]
+assert least["log_decrement"] == r["bearing"]["log_decrement"] == min(e["log_decrement"] for e in r["eigenvalues"])
+for e in r["eigenvalues"]:
+    angle = math.atan2(e["log_decrement"], 2 * math.pi)
+    assert math.isclose(math.sin(angle), e["damping_ratio"], rel_tol=1e-6) and e["stable"] == (e["damping_ratio"] > 0), e
+    assert math.isclose(e["frequency_hz"], e["whirl_ratio"] * 14000 / 60, rel_tol=1e-6)
+assert least["direction"] == "forward" and math.isclose(least["whirl_ratio"], r["bearing"]["whirl_ratio"], rel_tol=0.02)
+END
+
 # Draws hang on their seed and number alone, and shims of no height are the perfect bearing.
 expect 0 "" "$program" film design.json $fast --speeds 30000:90000:2 --shims=-7:7 --draws 12 --jobs 1 -o few.json --draws-out few.csv
 [ "$(head -n 13 draws.csv)" = "$(cat few.csv)" ] || fail "draws hang on their number or on the threads"
@@ -62,6 +83,10 @@ for other in "--seed 2" "--load 21" "--shims=-7:8" "--mesh 4,4"; do
   expect 65 "draws of another bearing" "$program" film $draws --draws 12 --keep kept $other
 done
 expect 65 "no file that" "$program" film $draws --draws 12 --keep design.json
+for bad in 0/2 3/2 1.0/3 1/3x ' 1/3' -1/3 +1/3 1/ /3 1; do # like those of lots
+  expect 64 "is not I/N with I from 1 to N" "$program" film $draws --draws 12 --keep part1 --shard "$bad"
+  expect 64 "is not I/N with I from 1 to N" "$program" lot scans --recipe r.json -o no --shard "$bad"
+done
 expect 64 "shard needs --keep" "$program" film $draws --draws 12 --shard 1/2
 
 # The job array: here a queue that runs every task at once.

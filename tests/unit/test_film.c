@@ -252,8 +252,9 @@ static void force_by(const bearing *b, size_t unknown, double force[2]) {
       }
 }
 
-/* Largest growth of T x' + S v = -J x - D X, X' = v, M v' = -f(x): B y' = A y. */
-static double largest_growth(bearing *b, double mass) {
+/* Largest growth of T x' + S v = -J x - D X, X' = v, M v' = -f(x): B y' = A y; of all motions, or
+ * of those that turn. */
+static double largest_growth(bearing *b, double mass, bool turning) {
   size_t n = (size_t)b->film.sparse.size, all = n + 4;
   gsl_matrix *a = gsl_matrix_calloc(all, all), *t = gsl_matrix_calloc(all, all);
   gsl_vector_complex *above = gsl_vector_complex_alloc(all);
@@ -281,7 +282,9 @@ static double largest_growth(bearing *b, double mass) {
   assert_int_equal(gsl_eigen_gen(a, t, above, below, work), 0);
   double growth = -INFINITY;
   for (size_t i = 0; i < all; i++)
-    if (fabs(gsl_vector_get(below, i)) > 1e-9)
+    if (fabs(gsl_vector_get(below, i)) > 1e-9 &&
+        (!turning ||
+         fabs(GSL_IMAG(gsl_vector_complex_get(above, i))) > 1e-6 * fabs(gsl_vector_get(below, i))))
       growth = fmax(growth, GSL_REAL(gsl_vector_complex_get(above, i)) / gsl_vector_get(below, i));
   gsl_eigen_gen_free(work);
   gsl_vector_free(below);
@@ -300,8 +303,36 @@ static void eigenvalues_have_the_same_threshold(void **unused) {
   balance(&b, 0.8, 0.4);
   assert_int_equal(fg_film_find_threshold(&b.ctx, &b.film, &b.at, &b.state, &found), FG_OK);
   assert_true(isfinite(found.mass));
-  assert_true(largest_growth(&b, found.mass * 0.999) < 0);
-  assert_true(largest_growth(&b, found.mass * 1.001) > 0);
+  assert_true(largest_growth(&b, found.mass * 0.999, false) < 0);
+  assert_true(largest_growth(&b, found.mass * 1.001, false) > 0);
+  close_bearing(&b);
+}
+
+/* A whirl that hardly grows, one that decays, and one that grows within a turn are all found. */
+static void least_stable_whirl_is_the_largest_eigenvalue(void **unused) {
+  (void)unused;
+  static const double over_critical[] = {0.03, 0.3, 0.9, 1, 1.2, 5, 100, 3000};
+  bearing b;
+  fg_film_threshold critical;
+  const fg_film_mesh mesh = pads_of(3, 8, 3);
+  open_bearing(&b, &mesh, 1.5, 0.67);
+  balance(&b, 0.8, 0.4);
+  assert_int_equal(fg_film_find_threshold(&b.ctx, &b.film, &b.at, &b.state, &critical), FG_OK);
+  for (size_t i = 0; i < sizeof over_critical / sizeof *over_critical; i++) {
+    double mass = critical.mass * over_critical[i], expected = largest_growth(&b, mass, true);
+    fg_film_motions found;
+    assert_int_equal(fg_film_find_motions(&b.ctx, &b.film, &b.at, &b.state, mass, &found), FG_OK);
+    assert_true(found.count > 0);
+    double growth = -INFINITY;
+    for (size_t k = 0; k < found.count; k++)
+      growth = fmax(growth, creal(found.motion[k].s));
+    if (fabs(growth - expected) > 1e-6 * cabs(found.motion[0].s) + 1e-9)
+      fail_msg("%g critical masses grow by %.9g, not %.9g", over_critical[i], growth, expected);
+    if (over_critical[i] == 1) assert_near(cimag(found.motion[0].s), critical.ratio, 1e-6);
+    for (size_t k = 1; k < found.count; k++) /* by damping */
+      assert_true(carg(found.motion[k].s) >= carg(found.motion[k - 1].s));
+    if (over_critical[i] >= 0.9) assert_true(found.motion[0].forward);
+  }
   close_bearing(&b);
 }
 
@@ -375,6 +406,7 @@ int main(void) {
       cmocka_unit_test(stiffness_is_the_forces_derivative),
       cmocka_unit_test(turning_pattern_and_load_turns_the_rotor),
       cmocka_unit_test(eigenvalues_have_the_same_threshold),
+      cmocka_unit_test(least_stable_whirl_is_the_largest_eigenvalue),
       cmocka_unit_test(orbits_in_time_have_the_same_threshold),
       cmocka_unit_test(top_foil_sags_between_bumps),
   };

@@ -15,6 +15,10 @@ fg_member_element fg_film_bearing_at, fg_film_speed_at, fg_film_draw_at;
 extern const fg_members fg_film_share_members;
 fg_member_element fg_film_share_at;
 
+/* Of an fg_film_mode. */
+extern const fg_members fg_film_mode_members;
+fg_member_element fg_film_mode_at;
+
 /* Of an fg_film_tolerance and an fg_film_uncertainty. */
 extern const fg_members fg_film_tolerance_members, fg_film_uncertainty_members;
 

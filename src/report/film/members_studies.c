@@ -1,6 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Members of studies of a film: tolerances on the clearance, uncertainty, sensitivities. */
+/* Members of studies of a film: whirls, tolerances on the clearance, uncertainty, sensitivities. */
+*uncertainty, sensitivities.* /
 #include "report/film/members.h"
+
+                  static double is_stable(const fg_subject *s) {
+  return ((const fg_film_mode *)s->object)->log_decrement > 0;
+}
+
+#define MODE(name, field, heading_, digits_)                                                       \
+  FG_NUMBER(name, fg_film_mode, field), .heading = (heading_),                                     \
+                                        .page = {.rank = 1, .digits = (digits_)},                  \
+                                        .terminal = {.rank = 1, .digits = (digits_)}
+
+static const fg_member mode_rows[] = {
+    {MODE("frequency_hz", frequency_hz, "whirl,\nHz", 4), .words = "of the whirl"},
+    {MODE("whirl_ratio", whirl_ratio, "over the\nspeed", 4), .words = "whirl over speed"},
+    {FG_WORD("direction", fg_film_mode, direction, fg_film_direction_words),
+     .words = "forward: with the rotor's rotation", .heading = "direction", .page = {.rank = 1},
+     .terminal = {.rank = 1}},
+    {MODE("log_decrement", log_decrement, "log.\ndecrement", 3),
+     .words = "logarithm of an amplitude over that of one whirl later; below 0 it grows"},
+    {MODE("damping_ratio", damping_ratio, "damping\nratio", 3),
+     .words = "less the real part over the size of the eigenvalue; below 0 it grows"},
+    {FG_FLAG_BY("stable", is_stable), .heading = "stable", .page = {.rank = 2},
+     .terminal = {.rank = 2}},
+};
+const fg_members fg_film_mode_members = FG_MEMBERS(mode_rows);
+
+bool fg_film_mode_at(const fg_subject *list, size_t i, fg_subject *element) {
+  element->object = &((const fg_film_report *)list->whole)->mode[i];
+  return i < ((const fg_film_report *)list->whole)->modes;
+}
 
 static double within_of(const fg_subject *s) {
   return ((const fg_film_report *)s->whole)->options.within_pct;

@@ -71,8 +71,25 @@ static void put_field(FILE *out, const fg_film_report *r) {
         out);
 }
 
+/* The rotor's whirls, and both thresholds beside each other. */
+static void put_modes(FILE *out, const fg_film_report *r) {
+  fputs("<p>Whirls of the rotor on its film by itself, at the stated speed: those with a "
+        "logarithmic decrement below 0 grow.",
+        out);
+  if (isfinite(r->threshold_rpm) && isfinite(r->threshold_eigen_rpm))
+    fprintf(out,
+            " The least stable one passes 0 at %.0f rpm; the critical mass passes the rotor's at "
+            "%.0f rpm.",
+            r->threshold_eigen_rpm, r->threshold_rpm);
+  fputs(r->modes ? "</p>\n" : " There is none.</p>\n", out);
+  fg_html_table(out, &fg_film_mode_members, &(fg_subject){.object = r, .whole = r},
+                fg_film_mode_at);
+}
+
 static void put_stability(FILE *out, const fg_film_report *r) {
-  fputs("<section>\n<h2 class=\"first\">The rotor</h2>\n<figure>", out);
+  fputs("<section>\n<h2 class=\"first\">The rotor</h2>\n", out);
+  put_modes(out, r);
+  fputs("<figure>", out);
   fg_film_plot_stability(out, r);
   fputs("<figcaption>Critical mass over speed, under the same load; the line is the rotor's "
         "mass.</figcaption></figure>\n<figure>",

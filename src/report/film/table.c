@@ -27,6 +27,13 @@ static void put_conditions(FILE *out, const fg_film_report *r) {
           r->diameter_mm, r->length_mm, r->clearance_um, r->compliance, o->loss_factor);
 }
 
+static void put_modes(FILE *out, const fg_film_report *r) {
+  if (!r->modes) return;
+  fputs("\nwhirls of the rotor on its film\n", out);
+  fg_members_terminal(out, "  ", &fg_film_mode_members, &(fg_subject){.object = r, .whole = r},
+                      fg_film_mode_at);
+}
+
 static void put_sensitivities(FILE *out, const fg_film_report *r) {
   if (!r->sensitivities) return;
   fputs("\nper percent of the design's bumps, and where they scatter by one percent\n", out);
@@ -53,7 +60,10 @@ fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out
   put_conditions(out, r);
   fg_members_terminal(out, "  ", &fg_film_result_members, &(fg_subject){.object = r, .whole = r},
                       fg_film_bearing_at);
-  if (isfinite(r->threshold_rpm)) fprintf(out, "\n  threshold speed  %.5g rpm\n", r->threshold_rpm);
+  put_modes(out, r);
+  if (isfinite(r->threshold_rpm))
+    fprintf(out, "\n  threshold speed  %.5g rpm (by eigenvalues %.5g)\n", r->threshold_rpm,
+            r->threshold_eigen_rpm);
   if (isfinite(r->load_capacity_n))
     fprintf(out, "  load capacity    %.4g N at this speed\n", r->load_capacity_n);
   if (isfinite(r->lift_off_rpm))
