@@ -80,7 +80,7 @@ static const fg_member result_rows[] = {
          "touching: solved, with a film thinner than touching_um; unsolved: no steady film was "
          "found at this load",
      .heading = "film", .csv = {.rank = 2}, .page = {.rank = 2}, .terminal = {.rank = 2}},
-    {RESULT("speed_rpm", speed_rpm, "speed,\nrpm", 5), .words = "of the rotor"},
+    {RESULT("speed_rpm", speed_rpm, "speed,\nrpm", 6), .words = "of the rotor"},
     {RESULT("compressibility_number", compressibility, "Λ", 4),
      .words = "6 mu omega (R / C)² / p_a"},
     {RESULT("eccentricity_ratio", eccentricity, "e / C", 4),

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Members of studies of a film: whirls, tolerances on the clearance, uncertainty, sensitivities. */
-*uncertainty, sensitivities.* /
 #include "report/film/members.h"
 
                   static double is_stable(const fg_subject *s) {

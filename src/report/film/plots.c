@@ -146,7 +146,7 @@ void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
 }
 
 void fg_film_plot_coefficients(FILE *out, const fg_film_report *r, bool damping) {
-  static const char *const styles[] = {"s1", "s2", "thin", "fit"};
+  static const char *const styles[] = {"s1", "s2", "thin", "s3"};
   static const char *const words[] = {"xx", "xy", "yx", "yy"};
   double x[2] = {INFINITY, -INFINITY}, y[2] = {0, 0};
   double ratio[FG_FILM_FREQUENCIES], value[4][FG_FILM_FREQUENCIES];
