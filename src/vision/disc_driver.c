@@ -88,7 +88,8 @@ static fg_status fit_driven(fg_context *ctx, fg_disc_work *work) {
   for (size_t s = 0; s < work->ring.sector_count; s++) {
     fg_step_fit *fit = &work->sectors[s];
     if (!fit->good) continue;
-    fg_driver_fit driven = {.driver = *work->driver, .noise = START_NOISE};
+    fg_driver_fit driven = {
+        .driver = *work->driver, .noise = START_NOISE, .tone = work->driver_tone};
     fg_driven_profile p = profile_of(work, s, bins);
     FG_TRY(fg_driver_fit_profiles(ctx, &p, 1, &driven));
     fit->good = driven.good && fabs(p.values[FG_DRIVEN_RIGHT]) < work->ring.reach_px;
@@ -167,25 +168,25 @@ fg_status fg_disc_use_driver(fg_context *ctx, fg_disc_work *work, const fg_found
 
 fg_status fg_disc_find_driver(fg_context *ctx, fg_disc_work *work) {
   sample s = {.count = 0};
-  fg_driver_tone *tone = NULL;
+  fg_driver_scratch *scratch = NULL;
   fg_driver_misfit misfit;
-  fg_driver_choice choice = {.linear = work->linear};
+  fg_driver_choice choice = {.threads = 1, .linear = work->linear};
   double gamma = work->gamma;
   fg_status status = FG_OK;
   if (work->white[0] || work->white[1]) return FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
+  FG_TRY_EXIT(fg_driver_scratch_create(ctx, &scratch));
   FG_TRY_EXIT(draw_sample(ctx, work, &s));
   if (s.count < SECTORS_MIN || !(s.ends[1] > s.ends[0])) goto exit;
   fg_driver plain = fg_driver_none(s.ends);
   plain.values[FG_DRIVER_LN_GAMMA] = log(gamma);
-  fg_driver_find_misfit(s.profiles, s.count, &plain, tone, &misfit);
+  fg_driver_find_misfit(s.profiles, s.count, &plain, scratch, &misfit);
   if (!fg_driver_is_missed(&misfit, s.ends[1] - s.ends[0])) goto exit;
   FG_TRY_EXIT(fg_driver_choose(ctx, s.profiles, s.count, s.ends, gamma, START_NOISE, &choice));
   if (!choice.fit.good) goto exit;
   const fg_found_driver found = {true, choice.fit.driver, choice.u_edge_px, choice.missed};
   FG_TRY_EXIT(fg_disc_use_driver(ctx, work, &found));
 exit:
-  free(tone);
+  fg_driver_scratch_free(scratch);
   free(s.bins);
   return status;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 
 /* A misfit counts above so many sd of chance, and above this share of the contrast. */
 #define MISSED_SDS   6.0
@@ -28,7 +29,7 @@
 
 /* The models, from the simplest on: the free values, the one of two simpler models that it starts
  * from (-1: the plain fit), and the start values. A stage is fitted only when no earlier one
- * explains the profiles.
+ * explains the profiles. Neighbours that do not start from each other are fitted at once.
  *
  * S and unsharp mask make an edge steeper, so they start from wider blurs. A steeper S of a wider
  * edge looks much like a flatter one of a narrower edge, along a valley that is not straight: the
@@ -43,10 +44,10 @@ static const struct family {
     {HALO, 0, {0, 0}, 0, 0, 0.1, 1},
     {HALO | GAMMA, 0, {1, 2}, 0, 0, 0.1, 1},
     {S_CURVE, 1, {0, 0}, 3, 0, 0, 1},
-    {S_CURVE | GAMMA, 1, {1, 4}, 2, 0, 0, 1},
     {MASK, 1, {0, 0}, 0, 0.5, 0, 1},
-    {MASK | GAMMA, 1, {6, 6}, 0, 0.5, 0, 1},
-    {MASK | S_CURVE, 2, {4, 6}, 2, 0.3, 0, 1},
+    {S_CURVE | GAMMA, 1, {1, 4}, 2, 0, 0, 1},
+    {MASK | GAMMA, 1, {5, 5}, 0, 0.5, 0, 1},
+    {MASK | S_CURVE, 2, {4, 5}, 2, 0.3, 0, 1},
     {MASK | S_CURVE, 2, {-1, -1}, 8, 0.5, 0, 2.3},
     {MASK | CENTRE, 2, {-1, -1}, 2.5, 0.5, 0, 1.4},
     {MASK | CENTRE, 2, {-1, -1}, 4, 0.5, 0, 1.6},
@@ -127,14 +128,47 @@ static void start_family(const struct family *family, const candidate *candidate
       c->profiles[i].values[FG_DRIVEN_BLUR_L + side] *= family->blurs;
 }
 
-static fg_status try_family(fg_context *ctx, const struct family *family,
-                            const candidate *candidates, const candidate *start, size_t count,
-                            fg_driver_tone *tone, candidate *c) {
+/* Families that are fitted at once. */
+typedef struct wave {
+  size_t first, last;
+  candidate *candidates; /* of all families, then the start */
+  size_t count;          /* of profiles */
+  bool linear;
+} wave;
+
+static fg_status try_family(fg_context *ctx, void *shared, size_t item) {
+  const wave *w = shared;
+  const struct family *family = &families[w->first + item];
+  const candidate *start = &w->candidates[FAMILIES];
+  candidate *c = &w->candidates[w->first + item];
+  fg_driver_scratch *scratch = NULL;
+  fg_status status = FG_OK;
+  if (w->linear && family->free & (GAMMA | S_CURVE)) return FG_OK;
+  FG_TRY_EXIT(fg_driver_scratch_create(ctx, &scratch));
   c->fit.noise = start->fit.noise;
-  start_family(family, candidates, start, c);
-  FG_TRY(fg_driver_fit_profiles(ctx, c->profiles, count, &c->fit));
-  fg_driver_find_misfit(c->profiles, count, &c->fit.driver, tone, &c->misfit);
+  start_family(family, w->candidates, start, c);
+  FG_TRY_EXIT(fg_driver_fit_profiles(ctx, c->profiles, w->count, &c->fit));
+  fg_driver_find_misfit(c->profiles, w->count, &c->fit.driver, scratch, &c->misfit);
   c->score = c->fit.good ? score_of(&c->misfit, family->free) : INFINITY;
+exit:
+  fg_driver_scratch_free(scratch);
+  return status;
+}
+
+/* Returns true when a family starts from one of `first` or later. */
+static bool starts_within(const struct family *family, size_t first) {
+  return family->from[0] >= (int)first || family->from[1] >= (int)first;
+}
+
+/* Fits the families of one stage, from w->last on. */
+static fg_status try_stage(fg_context *ctx, unsigned threads, int stage, wave *w) {
+  while (w->last < FAMILIES && families[w->last].stage == stage) {
+    w->first = w->last++;
+    while (w->last < FAMILIES && families[w->last].stage == stage &&
+           !starts_within(&families[w->last], w->first))
+      w->last++;
+    FG_TRY(fg_parallel_run(ctx, threads, w->last - w->first, try_family, w));
+  }
   return FG_OK;
 }
 
@@ -172,20 +206,17 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
                            const double ends[2], double gamma, double noise,
                            fg_driver_choice *choice) {
   candidate *candidates = NULL;
-  fg_driver_tone *tone = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, FAMILIES + 1, sizeof *candidates, (void **)&candidates));
   candidate *start = &candidates[FAMILIES];
   start->fit = (fg_driver_fit){.driver = fg_driver_none(ends), .noise = noise};
   start->fit.driver.values[FG_DRIVER_LN_GAMMA] = log(gamma);
   memcpy(start->profiles, profiles, count * sizeof *profiles);
-  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
-  size_t best = 0, i = 0;
+  wave w = {.candidates = candidates, .count = count, .linear = choice->linear};
+  size_t best = 0;
   choice->missed = true;
   for (int stage = 0; stage < STAGES && choice->missed; stage++) {
-    for (; i < FAMILIES && families[i].stage == stage; i++)
-      if (!choice->linear || !(families[i].free & (GAMMA | S_CURVE)))
-        FG_TRY_EXIT(try_family(ctx, &families[i], candidates, start, count, tone, &candidates[i]));
+    FG_TRY_EXIT(try_stage(ctx, choice->threads, stage, &w));
     best = weigh_models(candidates, stage == STAGES - 1 ? VALLEY_SHARPNESS : 1, &choice->u_edge_px);
     choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
   }
@@ -195,6 +226,5 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
   memcpy(profiles, candidates[best].profiles, count * sizeof *profiles);
 exit:
   free(candidates);
-  free(tone);
   return status;
 }

@@ -4,7 +4,7 @@
 #define FG_VISION_DRIVER_CHOICE_H
 
 #include "foilgauge/picture.h"
-#include "vision/driver_model.h"
+#include "vision/driver_places.h"
 
 enum { FG_DRIVER_PROFILES = 16 }; /* max number of profiles in a fit */
 
@@ -16,8 +16,17 @@ typedef struct fg_driver_misfit {
   double cells;
 } fg_driver_misfit;
 
+/* Room for fg_driver_find_misfit; free it by fg_driver_scratch_free (NULL: nothing). */
+typedef struct fg_driver_scratch {
+  fg_driver_tone tone;
+  fg_driven_places places;
+} fg_driver_scratch;
+
+fg_status fg_driver_scratch_create(fg_context *ctx, fg_driver_scratch **scratch);
+void fg_driver_scratch_free(fg_driver_scratch *scratch);
+
 void fg_driver_find_misfit(const fg_driven_profile *profiles, size_t count, const fg_driver *driver,
-                           fg_driver_tone *tone, fg_driver_misfit *misfit);
+                           fg_driver_scratch *scratch, fg_driver_misfit *misfit);
 
 /* Fills the driver's values in `state`, and the findings that follow. */
 void fg_driver_describe(const fg_driver *driver, fg_picture_state *state);
@@ -26,7 +35,8 @@ void fg_driver_describe(const fg_driver *driver, fg_picture_state *state);
 bool fg_driver_is_missed(const fg_driver_misfit *misfit, double contrast);
 
 typedef struct fg_driver_choice {
-  bool linear; /* set before: counts are proportional to the light, no tone curve is sought */
+  unsigned threads; /* set before; 0: all cores */
+  bool linear;      /* set before: counts are proportional to the light, no tone curve is sought */
   fg_driver_fit fit;
   fg_driver_misfit misfit; /* of the chosen model */
   double u_edge_px;        /* the model's own, and the spread of models that do as well */

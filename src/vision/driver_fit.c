@@ -10,7 +10,7 @@
 
 #include "core/memory.h"
 #include "core/small_solve.h"
-#include "vision/driver_model.h"
+#include "vision/driver_places.h"
 
 enum { ITERATIONS_MAX = 25, ALL = FG_DRIVEN_VALUES + FG_DRIVER_VALUES };
 #define GAIN_MIN    1e-4
@@ -50,19 +50,42 @@ typedef struct solver {
   size_t q, index[FG_DRIVER_VALUES]; /* free values of the driver */
   profile_equations *equations;
   fg_driver_tone *tone, *moved; /* moved: one per free value */
-  double *counts;               /* of a profile, then of each derivative */
-  double *trial;                /* profiles' values */
+  fg_driven_places places;      /* of one profile at a time */
+  size_t bins_max;
+  double *counts; /* of a profile, then of each derivative */
+  double *trial;  /* profiles' values */
 } solver;
 
 static double *derivative_column(const solver *s, size_t i) {
-  return s->counts + i * FG_DRIVEN_MAX;
+  return s->counts + i * s->bins_max;
+}
+
+static bool is_free(const solver *s, size_t value) {
+  return s->fit->free >> value & 1;
+}
+
+/* Sets the places to a profile's. */
+static void place_profile(solver *s, const fg_driven_profile *p, const fg_driver *driver) {
+  bool masked = driver->values[FG_DRIVER_AMOUNT] != 0 || is_free(s, FG_DRIVER_AMOUNT);
+  double radius = driver->values[FG_DRIVER_RADIUS] + driver_values[FG_DRIVER_RADIUS].step;
+  fg_driven_places_of_bins(p, masked, radius, &s->places);
+}
+
+static const fg_driver_tone *held_tone(const solver *s) {
+  return s->fit->tone && !s->q ? s->fit->tone : s->tone;
+}
+
+/* The tone curve where the k-th free value is moved by its step. */
+static const fg_driver_tone *moved_tone(const solver *s, size_t k) {
+  return s->index[k] <= FG_DRIVER_CENTRE ? &s->moved[k] : held_tone(s);
 }
 
 /* The model and its derivatives for one profile. */
-static void differentiate_profile(const solver *s, const fg_driven_profile *p,
-                                  const fg_driver *driver) {
+static void differentiate_profile(solver *s, const fg_driven_profile *p, const fg_driver *driver) {
   double *base = derivative_column(s, 0), values[FG_DRIVEN_VALUES];
-  fg_driven_counts(driver, s->tone, p, p->values, base);
+  bool lossy = driver->values[FG_DRIVER_HALO] > 0 || is_free(s, FG_DRIVER_HALO);
+  place_profile(s, p, driver);
+  fg_driven_places_keep(driver, held_tone(s), p->values, lossy, &s->places, base);
   for (size_t k = 0; k < FG_DRIVEN_VALUES + s->q; k++) {
     double *to = derivative_column(s, 1 + k), step;
     if (k < FG_DRIVEN_VALUES) {
@@ -72,12 +95,12 @@ static void differentiate_profile(const solver *s, const fg_driven_profile *p,
       }
       memcpy(values, p->values, sizeof values);
       values[k] += step = profile_values[k].step;
-      fg_driven_counts(driver, s->tone, p, values, to);
+      fg_driven_places_vary(driver, held_tone(s), values, &s->places, to);
     } else {
       size_t i = s->index[k - FG_DRIVEN_VALUES];
       fg_driver other = *driver;
       other.values[i] += step = driver_values[i].step;
-      fg_driven_counts(&other, &s->moved[k - FG_DRIVEN_VALUES], p, p->values, to);
+      fg_driven_places_vary(&other, moved_tone(s, k - FG_DRIVEN_VALUES), p->values, &s->places, to);
     }
     for (size_t i = 0; i < p->count; i++)
       to[i] = (to[i] - base[i]) / step;
@@ -129,12 +152,13 @@ static double prior_squares(const solver *s, const fg_driver *driver) {
   return sum;
 }
 
-static double build_equations(const solver *s) {
+static double build_equations(solver *s) {
   const fg_driver *driver = &s->fit->driver;
   double squares = prior_squares(s, driver);
-  fg_driver_tone_fill(driver, s->tone);
+  if (held_tone(s) == s->tone) fg_driver_tone_fill(driver, s->tone);
   for (size_t k = 0; k < s->q; k++) {
     fg_driver other = *driver;
+    if (s->index[k] > FG_DRIVER_CENTRE) continue;
     other.values[s->index[k]] += driver_values[s->index[k]].step;
     fg_driver_tone_fill(&other, &s->moved[k]);
   }
@@ -145,12 +169,14 @@ static double build_equations(const solver *s) {
   return squares;
 }
 
-static double squares_at(const solver *s, const fg_driver *driver, const double *values) {
+static double squares_at(solver *s, const fg_driver *driver, const double *values) {
   double squares = prior_squares(s, driver);
-  fg_driver_tone_fill(driver, s->tone);
+  if (held_tone(s) == s->tone) fg_driver_tone_fill(driver, s->tone);
   for (size_t i = 0; i < s->count; i++) {
     const fg_driven_profile *p = &s->profiles[i];
-    fg_driven_counts(driver, s->tone, p, values + i * FG_DRIVEN_VALUES, derivative_column(s, 0));
+    place_profile(s, p, driver);
+    fg_driven_places_keep(driver, held_tone(s), values + i * FG_DRIVEN_VALUES,
+                          driver->values[FG_DRIVER_HALO] > 0, &s->places, derivative_column(s, 0));
     for (size_t k = 0; k < p->count; k++) {
       double residual = p->bins[k].value - derivative_column(s, 0)[k];
       squares += weight_of(p, k, s->fit->noise) * residual * residual;
@@ -305,7 +331,7 @@ static void find_deviations(const solver *s, double squares) {
   fit->noise *= sqrt(scale);
 }
 
-static void iterate_steps(const solver *s) {
+static void iterate_steps(solver *s) {
   double damping = 1e-3, squares = build_equations(s);
   fg_driver driver;
   for (int i = 0; i < ITERATIONS_MAX && damping < DAMPING_MAX; i++) {
@@ -336,8 +362,12 @@ fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, s
     if (fit->free >> i & 1) s.index[s.q++] = i;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *s.equations, (void **)&s.equations));
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1 + s.q, sizeof *s.tone, (void **)&s.tone));
+  for (size_t i = 0; i < count; i++)
+    if (profiles[i].count > s.bins_max) s.bins_max = profiles[i].count;
+  bool masked = fit->driver.values[FG_DRIVER_AMOUNT] != 0 || is_free(&s, FG_DRIVER_AMOUNT);
+  FG_TRY_EXIT(fg_driven_places_create(ctx, s.bins_max, masked, &s.places));
   FG_TRY_EXIT(
-      fg_memory_allocate(ctx, (1 + ALL) * FG_DRIVEN_MAX, sizeof *s.counts, (void **)&s.counts));
+      fg_memory_allocate(ctx, (1 + ALL) * s.bins_max, sizeof *s.counts, (void **)&s.counts));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, count * FG_DRIVEN_VALUES, sizeof *s.trial, (void **)&s.trial));
   s.moved = s.tone + 1;
@@ -345,6 +375,7 @@ fg_status fg_driver_fit_profiles(fg_context *ctx, fg_driven_profile *profiles, s
 exit:
   free(s.equations);
   free(s.tone);
+  fg_driven_places_free(&s.places);
   free(s.counts);
   free(s.trial);
   return status;

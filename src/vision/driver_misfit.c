@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Residuals of a model that many profiles share. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "core/select.h"
 #include "vision/driver_choice.h"
 
@@ -45,15 +47,30 @@ static bool pool_cell(const cells *halves, size_t count, int cell, double *mean,
   return true;
 }
 
+fg_status fg_driver_scratch_create(fg_context *ctx, fg_driver_scratch **scratch) {
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof **scratch, (void **)scratch));
+  return fg_driven_places_create(ctx, FG_DRIVEN_MAX, true, &(*scratch)->places);
+}
+
+void fg_driver_scratch_free(fg_driver_scratch *scratch) {
+  if (!scratch) return;
+  fg_driven_places_free(&scratch->places);
+  free(scratch);
+}
+
 void fg_driver_find_misfit(const fg_driven_profile *profiles, size_t count, const fg_driver *driver,
-                           fg_driver_tone *tone, fg_driver_misfit *misfit) {
+                           fg_driver_scratch *scratch, fg_driver_misfit *misfit) {
   cells halves[HALVES_MAX];
   double counts[FG_DRIVEN_MAX];
   size_t n = 0;
   *misfit = (fg_driver_misfit){0};
-  fg_driver_tone_fill(driver, tone);
+  bool masked = driver->values[FG_DRIVER_AMOUNT] != 0, lossy = driver->values[FG_DRIVER_HALO] > 0;
+  fg_driver_tone_fill(driver, &scratch->tone);
   for (size_t i = 0; i < count && n + 2 <= HALVES_MAX; i++) {
-    fg_driven_counts(driver, tone, &profiles[i], profiles[i].values, counts);
+    fg_driven_places_of_bins(&profiles[i], masked, driver->values[FG_DRIVER_RADIUS],
+                             &scratch->places);
+    fg_driven_places_keep(driver, &scratch->tone, profiles[i].values, lossy, &scratch->places,
+                          counts);
     for (int side = profiles[i].single; side < 2; side++)
       add_half(&profiles[i], counts, side, &halves[n++]);
   }

@@ -19,6 +19,7 @@
 #ifndef FG_VISION_DRIVER_MODEL_H
 #define FG_VISION_DRIVER_MODEL_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "foilgauge/status.h"
@@ -48,16 +49,37 @@ fg_driver fg_driver_none(const double ends[2]);
 
 /* G as a table over all light, dense where powers are steep. */
 typedef struct fg_driver_tone {
-  bool linear;                            /* G is the identity, there is no table */
+  bool filled, linear;                    /* linear: G is the identity, there is no table */
+  fg_driver of;                           /* whose table it is */
   double count[FG_DRIVER_TONE_STEPS + 2]; /* at FG_DRIVER_LIGHT_MAX i² / steps² */
+  double rate[FG_DRIVER_TONE_STEPS + 1];  /* counts per light from there to the next */
   double below;                           /* counts per light below 0 */
 } fg_driver_tone;
 
 bool fg_driver_is_linear(const fg_driver *driver);
 double fg_driver_count(const fg_driver *driver, double light); /* G */
+
+/* Makes the table, unless it is that of the same curve (a new one is zeroed). */
 void fg_driver_tone_fill(const fg_driver *driver, fg_driver_tone *tone);
-double fg_driver_tone_at(const fg_driver_tone *tone, double light, double *rate);
 double fg_driver_tone_inverse(const fg_driver_tone *tone, double count);
+
+/* Light at the table's i-th count. */
+static inline double fg_driver_tone_light(int i) {
+  const double steps = FG_DRIVER_TONE_STEPS;
+  return FG_DRIVER_LIGHT_MAX * ((double)i / steps) * ((double)i / steps);
+}
+
+/* Returns G, and its change per light. */
+static inline double fg_driver_tone_at(const fg_driver_tone *tone, double light, double *rate) {
+  *rate = 1;
+  if (tone->linear) return light;
+  *rate = tone->below;
+  if (light < 0) return tone->count[0] + light * tone->below;
+  double root = sqrt(light / FG_DRIVER_LIGHT_MAX) * FG_DRIVER_TONE_STEPS;
+  int i = root < FG_DRIVER_TONE_STEPS ? (int)root : FG_DRIVER_TONE_STEPS;
+  *rate = tone->rate[i];
+  return tone->count[i] + (light - fg_driver_tone_light(i)) * *rate;
+}
 
 /* Slope of S in its middle, less 1. */
 double fg_driver_extra_slope(const fg_driver *driver);
@@ -92,22 +114,15 @@ typedef struct fg_driven_profile {
 enum { FG_DRIVEN_MAX = 1024 };
 #define FG_DRIVEN_STEP_PX 0.25
 
-/* Counts at the places of the bins. */
-void fg_driven_counts(const fg_driver *driver, const fg_driver_tone *tone,
-                      const fg_driven_profile *profile, const double *values, double *counts);
-
-/* Counts at `count` places from `from_px` on, FG_DRIVEN_STEP_PX apart. */
-void fg_driven_grid(const fg_driver *driver, const fg_driver_tone *tone, const double *values,
-                    bool single, double from_px, size_t count, double *counts);
-
 typedef struct fg_driver_fit {
   fg_driver driver;
   unsigned free; /* bit i: driver.values[i] is fitted */
   double sd[FG_DRIVER_VALUES];
-  double u_edge_px; /* sd of an edge's place, outwards, caused by the free values */
-  double edge_px;   /* mean place of the edges, outwards from the middle */
-  double noise;     /* sd of a pixel: in: as expected; out: by the misfit */
-  bool good;        /* it converged */
+  double u_edge_px;           /* sd of an edge's place, outwards, caused by the free values */
+  double edge_px;             /* mean place of the edges, outwards from the middle */
+  double noise;               /* sd of a pixel: in: as expected; out: by the misfit */
+  bool good;                  /* it converged */
+  const fg_driver_tone *tone; /* of `driver` where nothing of it is free; NULL: made anew */
 } fg_driver_fit;
 
 /* Fits all profiles and the free values of the driver at once. `profiles` and fit->driver hold the

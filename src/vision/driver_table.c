@@ -15,6 +15,7 @@ fg_status fg_driven_tables_create(fg_context *ctx, size_t count, double reach_px
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *tables->list, (void **)&tables->list));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, tables->size, sizeof *tables->scratch, (void **)&tables->scratch));
+  FG_TRY_EXIT(fg_driven_places_create(ctx, 0, true, &tables->places));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count * 2 * tables->size, sizeof *tables->memory,
                                  (void **)&tables->memory));
   for (size_t i = 0; i < count; i++) {
@@ -33,6 +34,7 @@ void fg_driven_tables_free(fg_driven_tables *tables) {
   free(tables->list);
   free(tables->memory);
   free(tables->scratch);
+  fg_driven_places_free(&tables->places);
   memset(tables, 0, sizeof *tables);
 }
 
@@ -42,12 +44,15 @@ void fg_driven_tables_fill(const fg_driver *driver, const fg_driver_tone *tone,
   fg_driven_table *table = &tables->list[index];
   double *grid = tables->scratch, flat[FG_DRIVEN_VALUES];
   size_t size = table->size;
-  fg_driven_grid(driver, tone, values, single, table->from_px, size, grid);
+  double radius = driver->values[FG_DRIVER_AMOUNT] != 0 ? driver->values[FG_DRIVER_RADIUS] : 0;
+  fg_driven_places *places = &tables->places;
+  fg_driven_places_of_grid(table->from_px, size, single, radius, places);
+  fg_driven_places_keep(driver, tone, values, driver->values[FG_DRIVER_HALO] > 0, places, grid);
   for (size_t i = 0; i < size; i++)
     table->counts[i] = (float)grid[i];
   memcpy(flat, values, sizeof flat);
   flat[FG_DRIVEN_SLOPE_L] = flat[FG_DRIVEN_SLOPE_R] = 0;
-  fg_driven_grid(driver, tone, flat, single, table->from_px, size, grid);
+  fg_driven_places_vary(driver, tone, flat, places, grid);
   for (size_t i = 0; i < size; i++) {
     size_t before = i > 0 ? i - 1 : i, after = i + 1 < size ? i + 1 : i;
     table->rates[i] =

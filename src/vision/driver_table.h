@@ -3,7 +3,7 @@
 #ifndef FG_VISION_DRIVER_TABLE_H
 #define FG_VISION_DRIVER_TABLE_H
 
-#include "vision/driver_model.h"
+#include "vision/driver_places.h"
 
 /* One profile about 0, and its rise there without slopes, which are the least certain part of an
  * edge's shape. */
@@ -17,6 +17,7 @@ typedef struct fg_driven_tables {
   fg_driven_table *list;
   float *memory;
   double *scratch;
+  fg_driven_places places;
   size_t size; /* of one table */
 } fg_driven_tables;
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tone curve of a driver's model as a table. */
 #include <math.h>
+#include <pthread.h>
 
 #include "vision/driver_model.h"
 
@@ -37,31 +38,54 @@ double fg_driver_count(const fg_driver *driver, double light) {
                                driver->values[FG_DRIVER_CENTRE], (count - low) / range);
 }
 
-/* Light at the table's i-th count. */
-static double light_of(int i) {
-  const double steps = FG_DRIVER_TONE_STEPS;
-  return FG_DRIVER_LIGHT_MAX * ((double)i / steps) * ((double)i / steps);
+/* ln(light / 255) at the table's places, for powers of it. */
+static double ln_light[FG_DRIVER_TONE_STEPS + 2];
+
+static void fill_ln_light(void) {
+  for (int i = 0; i < FG_DRIVER_TONE_STEPS + 2; i++)
+    ln_light[i] = log(fg_driver_tone_light(i) / 255);
+}
+
+/* Fills the counts before the S. */
+static void fill_power(const fg_driver *driver, double *count) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  double ln_gamma = driver->values[FG_DRIVER_LN_GAMMA], exponent = exp(-ln_gamma);
+  pthread_once(&once, fill_ln_light);
+  for (int i = 0; i < FG_DRIVER_TONE_STEPS + 2; i++)
+    count[i] = ln_gamma == 0 ? fg_driver_tone_light(i) : 255 * exp(exponent * ln_light[i]);
+}
+
+/* Turns counts to those after the S. */
+static void add_s_curve(const fg_driver *driver, double *count) {
+  double k = driver->values[FG_DRIVER_STEEPNESS], m = driver->values[FG_DRIVER_CENTRE];
+  double from = driver->ends[0], range = driver->ends[1] - driver->ends[0];
+  double low = logistic(-k * m), high = logistic(k * (1 - m));
+  if (k < STEEPNESS_MIN) return;
+  for (int i = 0; i < FG_DRIVER_TONE_STEPS + 2; i++) {
+    double x = (count[i] - from) / range;
+    count[i] = from + range * (logistic(k * (x - m)) - low) / (high - low);
+  }
+}
+
+static bool is_same_tone(const fg_driver *a, const fg_driver *b) {
+  for (int i = FG_DRIVER_LN_GAMMA; i <= FG_DRIVER_CENTRE; i++)
+    if (a->values[i] != b->values[i]) return false;
+  return a->ends[0] == b->ends[0] && a->ends[1] == b->ends[1];
 }
 
 void fg_driver_tone_fill(const fg_driver *driver, fg_driver_tone *tone) {
   static const double dark = 32;
+  if (tone->filled && is_same_tone(driver, &tone->of)) return;
+  tone->filled = true;
+  tone->of = *driver;
   tone->linear = fg_driver_is_linear(driver);
   if (tone->linear) return;
-  for (int i = 0; i < FG_DRIVER_TONE_STEPS + 2; i++)
-    tone->count[i] = fg_driver_count(driver, light_of(i));
+  fill_power(driver, tone->count);
+  add_s_curve(driver, tone->count);
+  for (int i = 0; i <= FG_DRIVER_TONE_STEPS; i++)
+    tone->rate[i] = (tone->count[i + 1] - tone->count[i]) /
+                    (fg_driver_tone_light(i + 1) - fg_driver_tone_light(i));
   tone->below = (tone->count[0] - fg_driver_count(driver, -dark)) / dark;
-}
-
-double fg_driver_tone_at(const fg_driver_tone *tone, double light, double *rate) {
-  *rate = 1;
-  if (tone->linear) return light;
-  *rate = tone->below;
-  if (light < 0) return tone->count[0] + light * tone->below;
-  double root = sqrt(light / FG_DRIVER_LIGHT_MAX) * FG_DRIVER_TONE_STEPS;
-  int i = root < FG_DRIVER_TONE_STEPS ? (int)root : FG_DRIVER_TONE_STEPS;
-  double from = light_of(i);
-  *rate = (tone->count[i + 1] - tone->count[i]) / (light_of(i + 1) - from);
-  return tone->count[i] + (light - from) * *rate;
 }
 
 double fg_driver_tone_inverse(const fg_driver_tone *tone, double count) {
@@ -78,7 +102,8 @@ double fg_driver_tone_inverse(const fg_driver_tone *tone, double count) {
   }
   double step = tone->count[high] - tone->count[low];
   double share = step > 0 ? (count - tone->count[low]) / step : 0;
-  return light_of(low) + fmin(fmax(share, 0), 1) * (light_of(high) - light_of(low));
+  return fg_driver_tone_light(low) +
+         fmin(fmax(share, 0), 1) * (fg_driver_tone_light(high) - fg_driver_tone_light(low));
 }
 
 double fg_driver_extra_slope(const fg_driver *driver) {

@@ -146,11 +146,11 @@ static fg_status draw_sample(fg_context *ctx, const fg_edge_work *work, sample *
 }
 
 /* Returns true when the plain model leaves more than chance. */
-static bool is_missed(const fg_edge_work *work, const sample *s, fg_driver_tone *tone) {
+static bool is_missed(const fg_edge_work *work, const sample *s, fg_driver_scratch *scratch) {
   fg_driver plain = fg_driver_none(s->ends);
   fg_driver_misfit misfit;
   plain.values[FG_DRIVER_LN_GAMMA] = log(work->gamma);
-  fg_driver_find_misfit(s->profiles, s->count, &plain, tone, &misfit);
+  fg_driver_find_misfit(s->profiles, s->count, &plain, scratch, &misfit);
   return fg_driver_is_missed(&misfit, s->ends[1] - s->ends[0]);
 }
 
@@ -181,7 +181,7 @@ void fg_edges_free_driver(fg_edge_work *work) {
 fg_status fg_edges_fit_driven(fg_context *ctx, const fg_edge_work *work,
                               fg_segment_profile *segment) {
   fg_driven_profile p = driven_profile(work, &segment->fit);
-  fg_driver_fit fit = {.driver = *work->driver, .noise = START_NOISE};
+  fg_driver_fit fit = {.driver = *work->driver, .noise = START_NOISE, .tone = work->driver_tone};
   fg_profile_bin bins[FG_DRIVEN_MAX];
   p.bins = bins;
   p.count = copy_bins(work, segment, bins);
@@ -213,13 +213,13 @@ void fg_edges_describe_driver(const fg_edge_work *work, fg_picture_state *state)
 
 fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found) {
   sample s = {.count = 0};
-  fg_driver_tone *tone = NULL;
-  fg_driver_choice choice = {.linear = work->linear};
+  fg_driver_scratch *scratch = NULL;
+  fg_driver_choice choice = {.threads = work->threads, .linear = work->linear};
   fg_status status = FG_OK;
   *found = false;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *tone, (void **)&tone));
+  FG_TRY_EXIT(fg_driver_scratch_create(ctx, &scratch));
   FG_TRY_EXIT(draw_sample(ctx, work, &s));
-  bool missed = is_missed(work, &s, tone), few = work->level_step > FG_LEVEL_STEP_MAX;
+  bool missed = is_missed(work, &s, scratch), few = work->level_step > FG_LEVEL_STEP_MAX;
   work->unexplained = missed && few;
   *found = !work->clipped && !few && (missed || fabs(log(work->gamma)) > LN_GAMMA_MAX);
   if (!*found) goto exit;
@@ -230,7 +230,7 @@ fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found)
   else
     work->unexplained = true;
 exit:
-  free(tone);
+  fg_driver_scratch_free(scratch);
   free(s.bins);
   return status;
 }
