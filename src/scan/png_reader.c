@@ -300,17 +300,17 @@ fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples) {
 /* libpng goes on after the image as if it had skipped it. The image's memory is freed for the
  * processing of its rows. */
 static fg_status finish_image(fg_context *ctx, fg_png *png) {
-  static const png_byte idat[] = "IDAT";
   if (!fg_png_image_finish(png->image, png->head)) return fail_image(ctx, png);
   fg_png_image_free(png->image);
   png->image = NULL;
   png->head_waits = true;
-  png_set_keep_unknown_chunks(png->png, PNG_HANDLE_CHUNK_NEVER, idat, 1);
   return FG_OK;
 }
 
 static void finish_libpng(fg_png *reader, void *unused) {
+  static const png_byte idat[] = "IDAT";
   (void)unused;
+  if (reader->head_waits) png_set_keep_unknown_chunks(reader->png, PNG_HANDLE_CHUNK_NEVER, idat, 1);
   png_read_end(reader->png, NULL);
 }
 
