@@ -11,6 +11,7 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 #include "effect/columns.h"
+#include "effect/midline.h"
 
 /* P-value of a claim: one test per effect, in every scan that is ever measured. */
 #define CHANCE 0.001
@@ -26,7 +27,12 @@ enum { GROUPS_MIN = 6 };
 /* Nuisances: twice and four times the direction of the edge's normal (a strip has two opposite
  * edges, so odd multiples cancel), and one that separates bumps from lands, which bend differently.
  */
-enum { NUISANCES = 5, UNKNOWNS = FG_WIDTH_EFFECTS_MAX + NUISANCES, AXES = 2 };
+enum { NUISANCES = 5, AXES = 2 };
+/* Widths that nobody has named: over the foil, on bumps alone, and over the arc of every bump,
+ * alike on all or growing with their numbers. */
+enum { OVER_FOIL = 2, OVER_BUMPS = 1, OVER_ARC = 3 };
+enum { SMOOTH_RIVALS = OVER_FOIL + OVER_BUMPS, RIVALS = SMOOTH_RIVALS + 2 * OVER_ARC };
+enum { UNKNOWNS = FG_WIDTH_EFFECTS_MAX + RIVALS + NUISANCES };
 /* A column of less mean square than this is none. */
 #define VANISHED 1e-9
 
@@ -77,6 +83,33 @@ static void list_rows(width_fit *f) {
     put_nuisances(row, to->column + f->effects);
   }
   f->unknowns = f->effects + NUISANCES;
+}
+
+static void put_rivals(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *column) {
+  const fg_edge_fit_part *part = &edge_fit->parts[row->part];
+  double u = part->end_to_end_rad > 0 ? 2 * row->psi / part->end_to_end_rad : 0,
+         arc[OVER_ARC] = {0};
+  column[0] = (3 * u * u - 1) / 2;
+  column[1] = u * (5 * u * u - 3) / 2;
+  column[2] = row->bump ? u : 0;
+  if (row->bump) fg_midline_legendre(row, 1, 1, OVER_ARC, arc);
+  for (int k = 0; k < OVER_ARC; k++) {
+    column[SMOOTH_RIVALS + 2 * k] = arc[k];
+    column[SMOOTH_RIVALS + 2 * k + 1] = u * arc[k];
+  }
+}
+
+/* The rivals stand behind the effects as further ones. */
+static void join_rivals(width_fit *f) {
+  for (size_t i = 0; i < f->count; i++) {
+    width_row *to = &f->rows[i];
+    const fg_edge_fit_row *row = &f->edge_fit->rows[to->row];
+    memmove(to->column + f->effects + RIVALS, to->column + f->effects,
+            (f->unknowns - f->effects) * sizeof *to->column);
+    put_rivals(f->edge_fit, row, to->column + f->effects);
+  }
+  f->effects += RIVALS;
+  f->unknowns += RIVALS;
 }
 
 static void put_effects(width_fit *f, const fg_width_findings *findings, double *work) {
@@ -247,15 +280,22 @@ static double change_by_place_error(const width_fit *f, size_t e, size_t axis) {
 
 /* ---- claims ---- */
 
+static double find_u(const width_fit *f, size_t e, double variance) {
+  double place = PLACE_UM * hypot(change_by_place_error(f, e, 0), change_by_place_error(f, e, 1));
+  return sqrt(variance + place * place);
+}
+
+static double find_p(const width_fit *f, size_t e, double variance, size_t groups) {
+  return 2 * gsl_cdf_tdist_Q(fabs(f->x[e]) / find_u(f, e, variance), (double)groups - 1);
+}
+
 static void assess_width_effect(const width_fit *f, size_t e, double variance, size_t groups,
                                 fg_width_effect *one) {
   double square = f->system.matrix[e][e], right = f->system.right[e];
-  double place = PLACE_UM * hypot(change_by_place_error(f, e, 0), change_by_place_error(f, e, 1)),
-         dof = (double)groups - 1;
-  double u = sqrt(variance + place * place);
+  double dof = (double)groups - 1, u = find_u(f, e, variance);
   one->effect.coefficient_um[0] = f->x[e];
   one->effect.u_coefficient_um[0] = u;
-  one->p_value = 2 * gsl_cdf_tdist_Q(fabs(f->x[e]) / u, dof);
+  one->p_value = find_p(f, e, variance, groups);
   one->found = one->p_value < CHANCE;
   one->share = 1 / (f->inverse[e][e] * square);
   one->would_explain = right * right / (square * f->system.sum_squares);
@@ -275,8 +315,37 @@ static double rms_um(const width_fit *f, const fg_width_findings *findings, bool
   return sqrt(sum / weight);
 }
 
+/* An effect beside a rival that shows is found only if it shows beside all of them, and leads those
+ * that are as smooth: else it is their name for something else. */
+static void judge_beside_rivals(const width_fit *f, size_t effects, fg_width_findings *findings) {
+  double variance[FG_WIDTH_EFFECTS_MAX + RIVALS], smooth = 1, any = 1;
+  size_t groups = find_variances(f, variance);
+  for (size_t r = 0; r < RIVALS; r++) {
+    double p_value = find_p(f, effects + r, variance[effects + r], groups);
+    any = fmin(any, p_value);
+    if (r < SMOOTH_RIVALS) smooth = fmin(smooth, p_value);
+  }
+  if (!(RIVALS * any < CHANCE)) return;
+  for (size_t e = 0; e < effects; e++) {
+    fg_width_effect *one = &findings->each[e];
+    if (one->found && find_p(f, e, variance[e], groups) < fmin(CHANCE, smooth)) continue;
+    findings->found -= one->found;
+    one->found = false;
+  }
+}
+
+/* The effects keep the sizes that they have without rivals. */
+static void face_rivals(width_fit *f, fg_width_findings *findings) {
+  size_t effects = f->effects;
+  join_rivals(f);
+  if (fit_widths(f)) judge_beside_rivals(f, effects, findings);
+  f->effects = effects;
+  for (size_t e = 0; e < effects; e++)
+    f->x[e] = findings->each[e].effect.coefficient_um[0];
+}
+
 static fg_status search_widths(fg_context *ctx, width_fit *f, fg_width_findings *findings) {
-  double variance[FG_WIDTH_EFFECTS_MAX];
+  double variance[FG_WIDTH_EFFECTS_MAX + RIVALS];
   bool solved = fit_widths(f);
   for (int round = 0; solved && round < OUTLIER_ROUNDS; round++) {
     FG_TRY(drop_outliers(ctx, f));
@@ -288,6 +357,7 @@ static fg_status search_widths(fg_context *ctx, width_fit *f, fg_width_findings 
     assess_width_effect(f, e, variance[e], groups, &findings->each[e]);
     findings->found += findings->each[e].found;
   }
+  if (findings->found) face_rivals(f, findings);
   return FG_OK;
 }
 

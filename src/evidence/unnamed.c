@@ -3,9 +3,14 @@
 
 #include <math.h>
 
+#include "effect/midline.h"
+
 /* Starts of the search for a shape: they are refined where an effect shows. Half a cycle over the
  * picture lies between two periods. */
 enum { STARTS = 24, PERIODS = 48, BROKEN_NUMBERS = 3 };
+/* A wave of changing size is wider in frequency than one cycle over the picture. */
+enum { BAND_PERIODS = 24, ENVELOPE = 3, BAND_NUMBERS = 2 * ENVELOPE };
+enum { JOINTS = 40, EVENT_LENGTHS = 3, EVENT_PLACES = 24, EVENT_NUMBERS = 3, JOINT_NUMBERS = 2 };
 
 static double start_along(const fg_field_frame *frame, int axis, size_t i, size_t count) {
   double low = frame->low_mm[axis], high = frame->high_mm[axis];
@@ -95,6 +100,114 @@ WAVE(x_waves_over_x, 0, 1, 0)
 WAVE(y_waves_over_x, 0, 0, 1)
 WAVE(x_waves_over_y, 1, 1, 0)
 
+/* ---- waves whose size and phase change over the picture: a resonance that is not always excited
+ * ----
+ */
+
+/* Evenly in frequency, one cycle over the picture between two. */
+static double band_along(const fg_field_frame *frame, int axis, size_t i, size_t count) {
+  (void)count;
+  return span_along(frame, axis) / (2 + (double)i);
+}
+
+static double band_in_x(const fg_field_frame *frame, size_t i, size_t count) {
+  return band_along(frame, 0, i, count);
+}
+
+static double band_in_y(const fg_field_frame *frame, size_t i, size_t count) {
+  return band_along(frame, 1, i, count);
+}
+
+static void fill_band(const fg_field_frame *frame, int axis, double period_mm, fg_point at,
+                      double *values) {
+  double along = fg_point_along(at, axis), angle = 2 * M_PI * along / period_mm;
+  double u = 2 * (along - frame->low_mm[axis]) / span_along(frame, axis) - 1;
+  const double envelope[ENVELOPE] = {1, u, (3 * u * u - 1) / 2};
+  for (int k = 0; k < ENVELOPE; k++) {
+    values[2 * k] = envelope[k] * sin(angle);
+    values[2 * k + 1] = envelope[k] * cos(angle);
+  }
+}
+
+#define BAND(name, over, moved_x, moved_y)                                                         \
+  static void name(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {   \
+    double values[BAND_NUMBERS];                                                                   \
+    fill_band(frame, over, shape[0], at, values);                                                  \
+    for (int c = 0; c < BAND_NUMBERS; c++)                                                         \
+      d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
+  }
+BAND(x_band_over_x, 0, 1, 0)
+BAND(y_band_over_x, 0, 0, 1)
+BAND(x_band_over_y, 1, 1, 0)
+BAND(y_band_over_y, 1, 0, 1)
+
+/* ---- events: what happens to the carriage at one place, and settles behind it, there or elsewhere
+ */
+
+static void event_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
+                       double *reach) {
+  static const double lengths[EVENT_LENGTHS] = {0.6, 1.8, 5.4};
+  const fg_field_frame *frame = &edge_fit->frame;
+  size_t places = count / EVENT_LENGTHS;
+  shape[0] = start_along(frame, 1, i / EVENT_LENGTHS, places);
+  shape[1] = lengths[i % EVENT_LENGTHS];
+  reach[0] = span_along(frame, 1) / (double)(places + 1);
+  reach[1] = 0.7 * shape[1];
+}
+
+#define EVENT(name, moved_x, moved_y)                                                              \
+  static void name(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {   \
+    double t = fmax(0, (at.y - shape[0]) / shape[1]), behind = t > 0 ? 1 : 0, falls = exp(-t);     \
+    const double values[EVENT_NUMBERS] = {behind, behind * falls, t * falls};                      \
+    (void)frame;                                                                                   \
+    for (int c = 0; c < EVENT_NUMBERS; c++)                                                        \
+      d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
+  }
+EVENT(x_event_over_y, 1, 0)
+EVENT(y_event_over_y, 0, 1)
+
+/* ---- a strip that is joined from two pieces: another slope and level behind one place ---- */
+
+static void joint_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
+                       double *reach) {
+  double low = edge_fit->psi_rad[0], step = (edge_fit->psi_rad[1] - low) / ((double)count + 1);
+  shape[0] = low + step * ((double)i + 1);
+  reach[0] = step;
+}
+
+static size_t joint_of_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                            const double *shape, double *values) {
+  double share = fg_midline_along_normal(row), behind = row->psi - shape[0];
+  (void)edge_fit;
+  values[0] = behind > 0 ? share : 0;
+  values[1] = behind > 0 ? share * behind : 0;
+  return JOINT_NUMBERS;
+}
+
+#define BAND_ROW(name, over, thing, basis, from)                                                   \
+  {                                                                                                \
+    .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
+    .moves = thing, .columns = BAND_NUMBERS, .shapes = 1, .shape_is = {FG_EFFECT_LENGTH},          \
+    .glass = basis, .axis = over, .start = from, .starts = BAND_PERIODS,                           \
+    .size_from = "as of a wave, the change of its size less; assumed", .size_um = {                \
+      10,                                                                                          \
+      10,                                                                                          \
+      6,                                                                                           \
+      6,                                                                                           \
+      4                                                                                            \
+    }                                                                                              \
+  }
+
+#define EVENT_ROW(name, thing, basis)                                                              \
+  {                                                                                                \
+    .id = name, .sought = FG_EFFECT_PLACED, .coordinate = FG_EFFECT_Y, .moves = thing,             \
+    .columns = EVENT_NUMBERS, .shapes = 2, .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_LENGTH},        \
+    .glass = basis, .axis = 1, .grid = event_grid, .starts = EVENT_LENGTHS * EVENT_PLACES,         \
+    .jumps = true, .size_from = "as of a lost row; assumed", .size_um = {                          \
+      15                                                                                           \
+    }                                                                                              \
+  }
+
 #define LENGTH_ROW(name, over, thing, basis, count, from, tried)                                   \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
@@ -126,11 +239,29 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
     LENGTH_ROW("scan.x.dx as a wave", 0, "x", x_waves_over_x, 2, period_in_x, PERIODS),
     LENGTH_ROW("scan.x.dy as a wave", 0, "y", y_waves_over_x, 2, period_in_x, PERIODS),
     LENGTH_ROW("scan.y.dx as a wave", 1, "x", x_waves_over_y, 2, period_in_y, PERIODS),
+    BAND_ROW("scan.x.dx as a wave of changing size", 0, "x", x_band_over_x, band_in_x),
+    BAND_ROW("scan.x.dy as a wave of changing size", 0, "y", y_band_over_x, band_in_x),
+    BAND_ROW("scan.y.dx as a wave of changing size", 1, "x", x_band_over_y, band_in_y),
+    BAND_ROW("scan.y.dy as a wave of changing size", 1, "y", y_band_over_y, band_in_y),
+    EVENT_ROW("scan.y.dx as an event", "x", x_event_over_y),
+    EVENT_ROW("scan.y.dy as an event", "y", y_event_over_y),
+    {.id = "foil.s with a jump",
+     .sought = FG_EFFECT_PLACED,
+     .coordinate = FG_EFFECT_FOIL,
+     .moves = "along the normal",
+     .columns = JOINT_NUMBERS,
+     .shapes = 1,
+     .midline = joint_of_foil,
+     .grid = joint_grid,
+     .starts = JOINTS,
+     .jumps = true,
+     .size_um = {15},
+     .size_from = "as of a dent; assumed"},
     {.id = NULL},
 };
 
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
-  return !edge_fit->discs || effect->columns != BROKEN_NUMBERS;
+  return !edge_fit->discs || !(effect->jumps || effect->columns == BAND_NUMBERS);
 }
 
 bool fg_effect_is_unnamed(const fg_effect *effect) {

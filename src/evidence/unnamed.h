@@ -3,7 +3,9 @@
  *
  * A sawtooth over one jump is a step with a slope, a chip that is mounted askew a step with two:
  * sets of named effects explain them on one arc, and are no evidence for their names. A decay of
- * x, or a wave of it, is as likely as the carriage's start and its ripple, which have names. */
+ * x, or a wave of it, is as likely as the carriage's start and its ripple, which have names. A wave
+ * whose size changes is three waves of one size to them, a stop that settles steps with dents
+ * beside them: sets of pieces, for one cause. */
 #ifndef FG_EVIDENCE_UNNAMED_H
 #define FG_EVIDENCE_UNNAMED_H
 
@@ -11,7 +13,7 @@
 
 /* The rows, in the form of effects, which no report names; NULL-terminated by id. They are of one
  * kind and share one prior probability. */
-enum { FG_UNNAMED_EFFECTS = 10 };
+enum { FG_UNNAMED_EFFECTS = 17 };
 extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
 
 /* Returns false for broken lines on discs, which show a slope and a jump apart: both have names. */

@@ -13,6 +13,10 @@
  * in picture sizes: else it is a lower one. */
 #define LEADING_SIGMAS 2.0
 #define MIDDLE_REACH   1.5
+/* Causes at once from which they are as likely the pieces of one that nobody has named: about one
+ * is expected (FG_EVIDENCE_PRIOR), so each further one is a chance of 3 %, while the shape of an
+ * unnamed cause takes as many pieces as it needs. */
+enum { PIECES = 3 };
 /* Share of the lowest polynomial in a crown or skew. */
 #define LOWEST_SHARE 0.6
 
@@ -151,15 +155,34 @@ static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, double 
   return FG_OK;
 }
 
+static void add_tie(const fg_evidence_model *model, fg_evidence_verdict *v) {
+  for (size_t k = 0; k < FG_EVIDENCE_PARTS; k++)
+    v->middle_mm[v->ties][k] = NAN;
+  v->tie[v->ties++] = *model;
+}
+
 /* The likeliest model with a rival stands for all where none bears its names: its rivals are shown.
  */
 static void take_likeliest_rivals(const fg_evidence_search *s, fg_evidence_verdict *v) {
   size_t m = 0;
   while (m + 1 < s->count && fg_evidence_is_named(&s->models[m]))
     m++;
-  for (size_t k = 0; k < FG_EVIDENCE_PARTS; k++)
-    v->middle_mm[0][k] = NAN;
-  v->tie[v->ties++] = s->models[m];
+  add_tie(&s->models[m], v);
+}
+
+/* Steps count once: rows are lost one by one, for one reason. */
+static size_t count_pieces(const fg_evidence_model *model) {
+  size_t count = 0, steps = 0;
+  for (size_t k = 0; k < model->parts; k++)
+    *(model->part[k]->effect->jumps ? &steps : &count) += 1;
+  return count + (steps > 0);
+}
+
+/* Returns the likeliest model without a named effect that is no clean scan; NULL: there is none. */
+static const fg_evidence_model *find_unnamed(const fg_evidence_search *s) {
+  for (size_t m = 0; m < s->count; m++)
+    if (s->models[m].parts && !s->models[m].named) return &s->models[m];
+  return NULL;
 }
 
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
@@ -171,6 +194,9 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence
   FG_TRY(find_best_named(ctx, s, fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top), &named));
   FG_TRY(list_ties(ctx, s, isfinite(named) ? named - FG_EVIDENCE_LEAD : top - FG_EVIDENCE_LEAD, v));
   if (!v->ties) take_likeliest_rivals(s, v);
+  const fg_evidence_model *unnamed = find_unnamed(s);
+  if (isfinite(named) && v->ties == 1 && count_pieces(&v->tie[0]) >= PIECES && unnamed)
+    add_tie(unnamed, v);
   v->outcome = !isfinite(named) ? FG_EVIDENCE_UNATTRIBUTED
                : v->ties > 1    ? FG_EVIDENCE_TIED
                                 : FG_EVIDENCE_FOUND;

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Evidence of models: rivals that no name has, shapes that must be just so, expectations. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "evidence/options.h"
 #include "evidence/search.h"
+#include "evidence/unnamed.h"
 #include "evidence/unseen.h"
+#include "evidence/verdict.h"
 #include "support/foil_rows.h"
 #include "support/test.h"
 
@@ -65,6 +68,55 @@ static void a_shape_that_must_be_just_so_costs_more_than_a_start(void **state) {
   foil_rows_close(&f);
 }
 
+static const fg_effect *unnamed(const char *id) {
+  const fg_effect *one = fg_unnamed_effects;
+  while (one->id && strcmp(one->id, id))
+    one++;
+  assert_non_null(one->id);
+  return one;
+}
+
+/* The verdict on a foil that an effect has moved, from one of its starts, and the names in it. */
+static void decide_on(const fg_effect *effect, size_t start, const double *um,
+                      fg_evidence_verdict *v, char *names, size_t size) {
+  fg_context ctx = {0};
+  foil_rows f;
+  fg_evidence_search s;
+  double shape[FG_FIELD_SHAPES], reach[FG_FIELD_SHAPES];
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, NOISE_UM);
+  fg_edge_fit_find_frame(&f.edge_fit);
+  fg_evidence_find_start(&f.edge_fit, effect, start, shape, reach);
+  assert_true(foil_rows_add_effect(&f, effect, shape, um, effect->columns) == effect->columns);
+  search(&f, &(fg_evidence_prior){1, 1}, &s);
+  assert_ok(&ctx, fg_evidence_decide(&ctx, &s, v));
+  for (size_t k = 0, used = 0; k < v->ties; k++)
+    for (size_t i = 0; i < v->tie[k].parts && used < size; i++) {
+      const fg_evidence_part *part = v->tie[k].part[i];
+      used += (size_t)snprintf(names + used, size - used, "%s + ",
+                               part->effect ? part->effect->id : part->rival->name);
+    }
+  fg_evidence_search_close(&s);
+  foil_rows_close(&f);
+}
+
+/* A stop of the carriage that settles is no lost rows with dents beside them, and a carriage that
+ * is shaken in the picture's middle is not three that swing: each is one cause, without a name. */
+static void one_cause_is_not_cut_into_named_pieces(void **state) {
+  (void)state;
+  static const char *id[] = {"scan.y.dy as an event", "scan.y.dx as a wave of changing size"};
+  static const size_t start[] = {10, 12};
+  static const double um[][6] = {{0, 10}, {2, 1, 0, 0, -2, -1}};
+  for (int k = 0; k < 2; k++) {
+    char names[1000] = "";
+    fg_evidence_verdict v;
+    decide_on(unnamed(id[k]), start[k], um[k], &v, names, sizeof names);
+    if (v.outcome != FG_EVIDENCE_UNATTRIBUTED || strstr(names, "scan.row_step") ||
+        strstr(names, "scan.yaw"))
+      fail_msg("%s: outcome %d, %s", id[k], (int)v.outcome, names);
+  }
+}
+
 /* Standard uncertainty of R0, um, that is left by what the scanner may do unseen. */
 static double unseen_um(foil_rows *f) {
   fg_context ctx = {0};
@@ -99,6 +151,7 @@ static void what_edges_do_not_show_is_bounded_by_them(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
+      cmocka_unit_test(one_cause_is_not_cut_into_named_pieces),
       cmocka_unit_test(what_edges_do_not_show_is_bounded_by_them),
       cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
   };
