@@ -4,52 +4,70 @@
 #include <math.h>
 #include <pthread.h>
 
-enum { REACH = 6, STEPS = 64, KNOTS = 2 * REACH * STEPS + 1 };
-/* Beyond it a tail is so small that it is not taken from the table. */
-#define TAIL_REACH 4.0
+enum { REACH = 6, STEPS = 64, RATIO_REACH = 13 };
 
-/* The normal distribution at -REACH, -REACH + 1/STEPS ... Cubics between the knots are within 1e-9
- * of it. */
-typedef struct knot {
-  double density, cumulative;
-} knot;
+/* Cubics between neighbouring knots, 1/STEPS apart, exact to 1e-9. */
+typedef struct cubic {
+  double c[4];
+} cubic;
 
-static knot knots[KNOTS + 1];
+/* Of the normal distribution from -REACH on, and of Mills' ratio, its upper tail over its density,
+ * from 0 on. */
+static struct { cubic density, cumulative; } normal[2 * REACH * STEPS + 1];
+static cubic ratio[RATIO_REACH * STEPS + 1];
 
-static void fill_knots(void) {
-  for (int i = 0; i <= KNOTS; i++) {
-    double t = (double)i / STEPS - REACH;
-    knots[i] = (knot){exp(-0.5 * t * t) / sqrt(2 * M_PI), 0.5 * erfc(-t * M_SQRT1_2)};
+/* A cubic from its values and its derivatives at both ends of a step. */
+static cubic cubic_between(const double value[2], const double rate[2]) {
+  double rise = value[1] - value[0], m0 = rate[0] / STEPS, m1 = rate[1] / STEPS;
+  return (cubic){{value[0], m0, 3 * rise - 2 * m0 - m1, m0 + m1 - 2 * rise}};
+}
+
+static inline double cubic_at(const cubic *k, double f) {
+  return k->c[0] + f * (k->c[1] + f * (k->c[2] + f * k->c[3]));
+}
+
+static void fill_normal(void) {
+  for (int i = 0; i <= 2 * REACH * STEPS; i++) {
+    double cumulative[2], density[2], bend[2];
+    for (int k = 0; k < 2; k++) {
+      double t = (double)(i + k) / STEPS - REACH;
+      cumulative[k] = 0.5 * erfc(-t * M_SQRT1_2);
+      density[k] = exp(-0.5 * t * t) / sqrt(2 * M_PI);
+      bend[k] = -t * density[k];
+    }
+    normal[i].cumulative = cubic_between(cumulative, density);
+    normal[i].density = cubic_between(density, bend);
   }
 }
 
-static void require_knots(void) {
+static void fill_ratio(void) {
+  for (int i = 0; i <= RATIO_REACH * STEPS; i++) {
+    double value[2], rate[2];
+    for (int k = 0; k < 2; k++) {
+      double y = (double)(i + k) / STEPS;
+      value[k] = sqrt(M_PI / 2) * exp(0.5 * y * y) * erfc(y * M_SQRT1_2);
+      rate[k] = y * value[k] - 1;
+    }
+    ratio[i] = cubic_between(value, rate);
+  }
+}
+
+static void fill_tables(void) {
+  fill_normal();
+  fill_ratio();
+}
+
+static void require_tables(void) {
   static pthread_once_t once = PTHREAD_ONCE_INIT;
-  pthread_once(&once, fill_knots);
+  pthread_once(&once, fill_tables);
 }
 
-/* A cubic from its values and its changes per step at 0 and 1. */
-static inline double cubic_between(double v0, double v1, double m0, double m1, double f) {
-  double rise = v1 - v0;
-  return v0 + f * (m0 + f * (3 * rise - 2 * m0 - m1 + f * (m0 + m1 - 2 * rise)));
-}
-
-/* |t| < REACH */
-static inline double cumulative_at(double t) {
-  double at = (t + REACH) * STEPS;
+/* Mills' ratio at y >= 0; beyond the table by its series. */
+static inline double ratio_at(double y) {
+  double at = y * STEPS;
+  if (!(y < RATIO_REACH)) return (1 - 1 / (y * y)) / y;
   int i = (int)at;
-  const knot *k = &knots[i];
-  return cubic_between(k[0].cumulative, k[1].cumulative, k[0].density / STEPS, k[1].density / STEPS,
-                       at - i);
-}
-
-static inline double density_at(double t) {
-  double at = (t + REACH) * STEPS, from;
-  int i = (int)at;
-  const knot *k = &knots[i];
-  from = (double)i / STEPS - REACH;
-  return cubic_between(k[0].density, k[1].density, -from * k[0].density / STEPS,
-                       -(from + 1.0 / STEPS) * k[1].density / STEPS, at - i);
+  return cubic_at(&ratio[i], at - i);
 }
 
 fg_lit fg_lit_profile(const fg_driver *driver, const fg_driver_tone *tone, const double *values,
@@ -73,46 +91,40 @@ fg_lit fg_lit_profile(const fg_driver *driver, const fg_driver_tone *tone, const
   return l;
 }
 
-/* A blurred step from 0 to 1 at t blurs outwards, and from 0 to a slope of 1. */
-static inline void blurred_step(double t, double blur, double *cumulative, double *density) {
-  *cumulative = t > 0;
-  *density = 0;
-  if (!(fabs(t) < REACH)) return;
-  *cumulative = cumulative_at(t);
-  *density = blur * density_at(t);
+/* exp(x) P(X > y), X normal, where x = y²/2 - t²/2 and the density at t is given. */
+static inline double scaled_tail(double x, double y, double density) {
+  return y < 0 ? exp(x) - density * ratio_at(-y) : density * ratio_at(y);
 }
 
-/* exp(x) P(X > y), X normal. */
-static double scaled_tail(double x, double y) {
-  if (y > 9) return 0;
-  if (y <= -REACH) return exp(x);
-  if (!(y <= TAIL_REACH)) return 0.5 * exp(x) * erfc(y * M_SQRT1_2);
-  return exp(x) * (1 - cumulative_at(y));
-}
-
-/* Loss of a blurred step of 1 to a halo of length l: the step less its own blur by exp(-|x|/l)/2l,
- * in closed form. */
-static double halo_loss(double d, double blur, double length) {
-  double r = blur / length, t = d / blur;
-  if (fabs(d) > 30 * length) return 0;
-  return 0.5 * (scaled_tail(0.5 * r * r - d / length, r - t) -
-                scaled_tail(0.5 * r * r + d / length, r + t));
+/* Loss of a blurred step of 1, t blurs outwards, to a halo r times shorter than the blur: the step
+ * less its own blur by exp(-|x|/l)/2l, in closed form. */
+static inline double halo_loss(double t, double r, double density) {
+  if (fabs(t) > 30 / r) return 0;
+  return 0.5 * (scaled_tail(r * (0.5 * r - t), r - t, density) -
+                scaled_tail(r * (0.5 * r + t), r + t, density));
 }
 
 void fg_lit_side_fill(const fg_lit *lit, int side, bool lossy, const double *across, size_t count,
                       fg_lit_side *out) {
   double edge = lit->edge[side], blur = lit->blur[side], sign = side ? 1 : -1;
-  require_knots();
+  double r = blur / lit->halo_px, per_px = 1 / blur;
+  require_tables();
   out->edge = edge;
   out->blur = blur;
   out->halo_px = lossy ? lit->halo_px : NAN;
   for (size_t i = 0; i < count; i++) {
-    double d = sign * (across[i] - edge);
+    double d = sign * (across[i] - edge), t = d * per_px, cumulative = t > 0, density = 0;
+    if (fabs(t) < REACH) {
+      double at = (t + REACH) * STEPS;
+      int k = (int)at;
+      cumulative = cubic_at(&normal[k].cumulative, at - k);
+      density = cubic_at(&normal[k].density, at - k);
+    }
     out->outwards[i] = d;
-    blurred_step(d / blur, blur, &out->cumulative[i], &out->density[i]);
+    out->cumulative[i] = cumulative;
+    out->density[i] = blur * density;
+    if (lossy) out->loss[i] = halo_loss(t, r, density);
   }
-  for (size_t i = 0; lossy && i < count; i++)
-    out->loss[i] = halo_loss(out->outwards[i], blur, lit->halo_px);
 }
 
 __attribute__((target_clones("avx2", "default"))) static void add_side(const fg_lit_side *side,

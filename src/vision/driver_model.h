@@ -66,7 +66,7 @@ double fg_driver_tone_inverse(const fg_driver_tone *tone, double count);
 /* Light at the table's i-th count. */
 static inline double fg_driver_tone_light(int i) {
   const double steps = FG_DRIVER_TONE_STEPS;
-  return FG_DRIVER_LIGHT_MAX * ((double)i / steps) * ((double)i / steps);
+  return FG_DRIVER_LIGHT_MAX / (steps * steps) * ((double)i * i);
 }
 
 /* Returns G, and its change per light. */
@@ -75,7 +75,8 @@ static inline double fg_driver_tone_at(const fg_driver_tone *tone, double light,
   if (tone->linear) return light;
   *rate = tone->below;
   if (light < 0) return tone->count[0] + light * tone->below;
-  double root = sqrt(light / FG_DRIVER_LIGHT_MAX) * FG_DRIVER_TONE_STEPS;
+  const double steps = FG_DRIVER_TONE_STEPS;
+  double root = sqrt(light * (steps * steps / FG_DRIVER_LIGHT_MAX));
   int i = root < FG_DRIVER_TONE_STEPS ? (int)root : FG_DRIVER_TONE_STEPS;
   *rate = tone->rate[i];
   return tone->count[i] + (light - fg_driver_tone_light(i)) * *rate;

@@ -114,7 +114,7 @@ static double cubic_at(const double *grid, size_t count, double at) {
 }
 
 static double on_scale(double count) {
-  return fmin(fmax(count, 0), 255);
+  return !(count > 0) ? 0 : count > 255 ? 255 : count; /* fmin and fmax are calls */
 }
 
 /* The counts from those before the mask, and from their blur. */

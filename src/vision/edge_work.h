@@ -55,6 +55,7 @@ typedef struct fg_edge_work {
   unsigned threads;
   size_t chunk_count;
   fg_pixel_band *bands;      /* chunk_count */
+  bool borrowed;             /* the bands are those of another measurement, and filled */
   fg_edge_station *stations; /* reference->count */
   fg_segment_profile *segments;
   fg_profile_bin *bins; /* segment_count × bin_count */

@@ -139,16 +139,17 @@ static fg_status allocate_work(fg_context *ctx, fg_edge_work *work) {
   size_t count = work->reference->count;
   work->chunk_count = (count + FG_CHUNK_STATIONS - 1) / FG_CHUNK_STATIONS;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *work->stations, (void **)&work->stations));
-  FG_TRY(fg_memory_allocate(ctx, work->chunk_count, sizeof *work->bands, (void **)&work->bands));
+  if (!work->borrowed)
+    FG_TRY(fg_memory_allocate(ctx, work->chunk_count, sizeof *work->bands, (void **)&work->bands));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->tables, (void **)&work->tables));
   fg_edge_tables_init(work->tables, 1);
   return FG_OK;
 }
 
 static void free_work(fg_edge_work *work) {
-  for (size_t i = 0; work->bands && i < work->chunk_count; i++)
+  for (size_t i = 0; work->bands && !work->borrowed && i < work->chunk_count; i++)
     fg_pixel_band_free(&work->bands[i]);
-  free(work->bands);
+  if (!work->borrowed) free(work->bands);
   free(work->stations);
   free(work->segments);
   free(work->bins);
@@ -222,7 +223,8 @@ static fg_status find_plain(fg_context *ctx, const fg_edge_work *model,
   fg_strip plain = {0};
   unsigned facts = 0;
   fg_status status = FG_OK;
-  work.linear = work.plain = true;
+  work.linear = work.plain = work.borrowed = true;
+  work.bands = model->bands;
   FG_TRY_EXIT(allocate_work(ctx, &work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, model->reference->count, sizeof *plain.stations,
                                  (void **)&plain.stations));

@@ -47,8 +47,9 @@ static fg_status collect_task(fg_context *ctx, void *shared, size_t chunk) {
   fg_edge_work *work = shared;
   size_t first, last;
   fg_edges_chunk(work, chunk, &first, &last);
-  FG_TRY(fg_pixel_band_collect(ctx, work->tiles, work->reference, first, last,
-                               work->width_px / 2 + work->reach_px, &work->bands[chunk]));
+  if (!work->borrowed)
+    FG_TRY(fg_pixel_band_collect(ctx, work->tiles, work->reference, first, last,
+                                 work->width_px / 2 + work->reach_px, &work->bands[chunk]));
   weigh_pixels(work, chunk);
   return FG_OK;
 }

@@ -88,7 +88,7 @@ static void test_table_is_the_normal_distribution(void **state) {
     double far = 0.5 * exp(0.5 * r * r + t * r) * erfc((r + t) * M_SQRT1_2);
     assert_near(side.cumulative[i], 0.5 * erfc(-t * M_SQRT1_2), 2e-9);
     assert_near(side.density[i], exp(-0.5 * t * t) / sqrt(2 * M_PI), 1e-8);
-    assert_near(side.loss[i], 0.5 * (near - far), 2e-6);
+    assert_near(side.loss[i], 0.5 * (near - far), 2e-8);
   }
 }
 
