@@ -78,7 +78,8 @@ typedef struct fg_film_options {
   /* Measured profile of the bore, CSV with angle_deg and radius_mm: its radius less the design's
    * sleeve_radius_mm is added to the clearance. NULL: round, as designed. */
   const char *bore;
-  size_t draws; /* bearings with random shims, or of a lot; 0: none */
+  double lift_off_rpm, u_lift_off_rpm; /* measured, as a rotor coasts down; NaN: not */
+  size_t draws;                        /* bearings with random shims, or of a lot; 0: none */
   /* File of drawn bearings that are solved, which a run goes on from and adds to; NULL: none. */
   const char *keep;
   size_t shard, shards; /* only draws shard - 1, shard - 1 + shards, ...; shards 0: all */
@@ -219,6 +220,18 @@ typedef struct fg_film_uncertainty {
   double mass_low_kg, mass_high_kg; /* interval of 95 % of the critical mass */
 } fg_film_uncertainty;
 
+/* A measured lift-off speed against the bearing's: the shift of all its clearances with which the
+ * film is touching_um thick at that speed, under the same load. */
+typedef struct fg_film_lift_off {
+  bool asked;
+  double rpm, u_rpm;                     /* as measured */
+  double predicted_rpm, u_predicted_rpm; /* u by the clearances' u; NaN: not known */
+  double shift_um, u_shift_um;           /* u by the speed's u alone */
+  double clearance_um;                   /* mean over the bumps, shifted */
+  double u_bearing_um;                   /* of the bearing's mean clearance, before */
+  bool agrees;                           /* no shift is shown: within 2 u of all */
+} fg_film_lift_off;
+
 /* A place of the rotor's orbit. */
 typedef struct fg_film_orbit_place {
   double turn, place_um[2], min_film_um;
@@ -265,6 +278,7 @@ typedef struct fg_film_report {
   /* Largest load at this speed, and lowest speed under this load, with a film of touching_um at
    * least; NaN: not found, or it touches already. */
   double load_capacity_n, lift_off_rpm;
+  fg_film_lift_off lift_off;
   char bore_path[512], bore_sha256[65];
   double bore_shift_mm[FG_BEARING_BUMPS_MAX]; /* at the bearing's places */
   fg_film_column *column;

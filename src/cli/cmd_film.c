@@ -58,6 +58,8 @@ enum {
   OPTION_WITHIN,
   OPTION_KEEP,
   OPTION_SHARD,
+  OPTION_LIFT_OFF,
+  OPTION_U_LIFT_OFF,
 };
 
 static const struct argp_option options[] = {
@@ -117,6 +119,11 @@ static const struct argp_option options[] = {
      "The tolerance on the clearance that keeps the threshold speed within PERCENT of that as "
      "designed, and the share of drawn bearings that keep it",
      3},
+    {"lift-off", OPTION_LIFT_OFF, "RPM", 0,
+     "Speed at which this rotor lifted off, or touched down as it coasted, under this load: by how "
+     "much the clearances differ from the bearing's, for the model to do so",
+     3},
+    {"u-lift-off", OPTION_U_LIFT_OFF, "RPM", 0, "Its standard uncertainty (default: 0)", 3},
     {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
      "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
      "higher shim closes it",
@@ -231,6 +238,8 @@ static const number_option numbers[] = {
     NUMBER(OPTION_VISCOSITY, "viscosity", viscosity_upa_s, 1e-3, 1e6),
     NUMBER(OPTION_AMBIENT, "ambient", ambient_kpa, 1e-3, 1e6),
     NUMBER(OPTION_WITHIN, "within", within_pct, 0.1, 100),
+    NUMBER(OPTION_LIFT_OFF, "lift-off", lift_off_rpm, 1e-3, 1e8),
+    NUMBER(OPTION_U_LIFT_OFF, "u-lift-off", u_lift_off_rpm, 0, 1e8),
     NUMBER(OPTION_TOUCHING, "touching", touching_um, 0, 1e5),
 };
 
@@ -307,6 +316,8 @@ static void check_film_end(film_run *run, struct argp_state *state) {
   if ((shims || lot) && !o->draws) o->draws = 1000;
   if (o->shards && !o->keep) argp_error(state, "--shard needs --keep FILE");
   if (o->keep && !o->draws) argp_error(state, "--keep is of drawn bearings: --shims, or a lot");
+  if (o->u_lift_off_rpm > 0 && isnan(o->lift_off_rpm))
+    argp_error(state, "--u-lift-off is of --lift-off RPM");
   if (run->outputs.path[OUT_ORBIT] && !o->orbit_turns)
     argp_error(state, "--orbit-out needs --orbit TURNS");
   if (isfinite(o->compliance) && o->model)

@@ -34,6 +34,8 @@ fg_film_options fg_film_options_default(void) {
                            .cells_axial = 8,
                            .touching_um = 1,
                            .within_pct = NAN,
+                           .lift_off_rpm = NAN,
+                           .u_lift_off_rpm = 0,
                            .speed_low_rpm = NAN,
                            .speed_high_rpm = NAN,
                            .speeds = 25,

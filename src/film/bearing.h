@@ -31,6 +31,8 @@ typedef struct fg_film_workspace {
   fg_film film;
   fg_film_case at, before;
   fg_film_state state;
+  fg_film_case spare_before; /* of fg_film_seek_onward */
+  fg_film_state spare;
 } fg_film_workspace;
 fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
                                  fg_film_workspace *workspace);
@@ -42,6 +44,18 @@ typedef enum fg_film_start { FG_FILM_AFRESH, FG_FILM_ONWARD } fg_film_start;
 fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report,
                                 fg_film_workspace *workspace, const fg_film_bearing *bearing,
                                 double speed_rpm, fg_film_start start, fg_film_result *result);
+
+/* The same from nothing, and where no whole film is found so, on from a faster rotor: near lift-off
+ * a bearing of pads may have a film before and behind a gap between them, and one path finds one of
+ * both. */
+fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *report,
+                            fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                            double speed_rpm, fg_film_result *result);
+
+/* The same, on from the workspace's case and state first, which stay where no film is found. */
+fg_status fg_film_seek_onward(fg_context *ctx, const fg_film_report *report,
+                              fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                              double speed_rpm, fg_film_result *result);
 
 /* Draws the random bearings; the state of the perfect one is the workspace's. */
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
@@ -91,6 +105,11 @@ fg_status fg_film_find_uncertainty(fg_context *ctx, fg_film_report *report,
 
 /* Finds the largest load and the lift-off speed of the bearing, which is solved. */
 fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *report,
+                                fg_film_workspace *workspace);
+
+/* Holds a measured lift-off speed, where the options have one, against the bearing; behind
+ * fg_film_find_capacity. */
+fg_status fg_film_hold_lift_off(fg_context *ctx, fg_film_report *report,
                                 fg_film_workspace *workspace);
 
 /* Reads the bore's profile, where there is one; adds it to the clearances. */

@@ -9,6 +9,14 @@
 #include "foilgauge/memory.h"
 #include "foilgauge/table.h"
 
+/* Share that a radius may differ from the sleeve's. */
+static const double off_share = 0.1;
+/* The same place, the same radius: a profile may close with its first row. */
+static const double same_deg = 1e-6, same_mm = 1e-5;
+/* Stretch without rows: wider than between bumps and than some steps is a hole, and a bore whose
+ * ovality is not seen (fewer than four rows) is not measured. */
+static const double gap_widest_deg = 90, gap_steps = 3;
+
 typedef struct bore_point {
   double angle_deg, radius_mm;
 } bore_point;
@@ -35,6 +43,66 @@ static double radius_at(const bore_point *points, size_t count, double angle_deg
   return a->radius_mm + share * (b->radius_mm - a->radius_mm);
 }
 
+/* A radius that is far off is likely one of another unit. */
+static fg_status check_radius(fg_context *ctx, const fg_film_report *r, size_t row,
+                              double radius_mm) {
+  static const struct {
+    double factor;
+    const char *words;
+  } units[] = {{2, "; it looks like a diameter"},
+               {1000, "; it looks like micrometres"},
+               {1 / 25.4, "; it looks like inches"}};
+  double sleeve_mm = r->design.bumps.sleeve_radius_mm;
+  const char *words = "";
+  if (fabs(radius_mm - sleeve_mm) <= off_share * sleeve_mm) return FG_OK;
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (fabs(radius_mm / units[i].factor - sleeve_mm) <= off_share * sleeve_mm)
+      words = units[i].words;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: row %zu: a radius of %g mm is not that of a bore of %g mm%s", r->options.bore,
+                 row, radius_mm, sleeve_mm, words);
+}
+
+static double gap_behind(const bore_point *points, size_t count, size_t i) {
+  double gap = whole_turn(points[(i + 1) % count].angle_deg - points[i].angle_deg);
+  return i + 1 == count && gap == 0 ? 360 : gap;
+}
+
+/* The step from row to row that half of them keep. */
+static fg_status find_usual_step(fg_context *ctx, const bore_point *points, size_t count,
+                                 double *step) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof(double), &block));
+  double *gaps = block;
+  for (size_t i = 0; i < count; i++)
+    gaps[i] = gap_behind(points, count, i);
+  fg_sort(gaps, count);
+  *step = gaps[count / 2];
+  free(gaps);
+  return FG_OK;
+}
+
+/* The same angle twice, with two radii; a stretch without rows. */
+static fg_status check_angles(fg_context *ctx, const fg_film_report *r, const bore_point *points,
+                              size_t count) {
+  double step;
+  FG_TRY(find_usual_step(ctx, points, count, &step));
+  double widest = fmin(gap_widest_deg, fmax(r->options.pitch_deg, gap_steps * step));
+  for (size_t i = 0; i < count; i++) {
+    const bore_point *next = &points[(i + 1) % count];
+    double gap = gap_behind(points, count, i);
+    if (gap < same_deg && fabs(next->radius_mm - points[i].radius_mm) > same_mm)
+      return fg_fail(ctx, FG_ERR_DATA, "%s: %g degrees are there twice, with %g and %g mm",
+                     r->options.bore, points[i].angle_deg, points[i].radius_mm, next->radius_mm);
+    if (gap > widest * (1 + same_deg))
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: no radius from %g to %g degrees: a profile goes round the whole bore%s",
+                     r->options.bore, points[i].angle_deg, next->angle_deg,
+                     points[count - 1].angle_deg < 6.3 ? " (are its angles radians?)" : "");
+  }
+  return FG_OK;
+}
+
 static fg_status take_profile(fg_context *ctx, fg_film_report *r, const fg_table *table,
                               bore_point *points) {
   const fg_extended *angle, *radius;
@@ -43,12 +111,10 @@ static fg_status take_profile(fg_context *ctx, fg_film_report *r, const fg_table
   FG_TRY(fg_table_numbers(ctx, table, "radius_mm", &radius));
   for (size_t i = 0; i < table->rows; i++) {
     points[i] = (bore_point){whole_turn(angle[i].value), radius[i].value};
-    if (fabs(radius[i].value - sleeve_mm) > sleeve_mm / 10)
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: row %zu: a radius of %g mm is not that of a bore of %g mm",
-                     r->options.bore, i + 1, radius[i].value, sleeve_mm);
+    FG_TRY(check_radius(ctx, r, i + 1, radius[i].value));
   }
   fg_sort_items(points, table->rows, sizeof *points, compare_bore_points);
+  FG_TRY(check_angles(ctx, r, points, table->rows));
   for (size_t i = 0; i < r->bearing.count; i++)
     r->bore_shift_mm[i] = radius_at(points, table->rows, r->bearing.angle_deg[i]) - sleeve_mm;
   return FG_OK;

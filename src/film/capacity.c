@@ -14,8 +14,8 @@ static fg_status carries(fg_context *ctx, const fg_film_report *r, fg_film_works
   fg_film_report changed = *r;
   fg_film_result result;
   changed.options.load_n *= load_factor;
-  FG_TRY(fg_film_solve_bearing(ctx, &changed, workspace, &r->bearing,
-                               r->options.speed_rpm * speed_factor, FG_FILM_AFRESH, &result));
+  FG_TRY(fg_film_seek_onward(ctx, &changed, workspace, &r->bearing,
+                             r->options.speed_rpm * speed_factor, &result));
   *does = result.outcome == FG_FILM_SOLVED;
   return FG_OK;
 }

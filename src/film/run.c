@@ -62,8 +62,7 @@ static fg_status keep_field(fg_context *ctx, fg_film_report *r, const fg_film_wo
 
 static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace,
                                const fg_film_bearing *perfect) {
-  FG_TRY(fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, FG_FILM_AFRESH,
-                               &r->perfect));
+  FG_TRY(fg_film_seek_film(ctx, r, workspace, perfect, r->options.speed_rpm, &r->perfect));
   if (r->perfect.outcome == FG_FILM_UNSOLVED)
     return fg_fail(ctx, FG_ERR_NUMERIC,
                    "the design's bearing has no film at %g N and %g rpm: lower the load, raise the "
@@ -111,7 +110,8 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   FG_TRY(keep_field(ctx, r, workspace));
   FG_TRY(fg_film_follow_orbit(ctx, r, workspace));
   FG_TRY(fg_film_map_speeds(ctx, r, workspace));
-  return fg_film_find_capacity(ctx, r, workspace);
+  FG_TRY(fg_film_find_capacity(ctx, r, workspace));
+  return fg_film_hold_lift_off(ctx, r, workspace);
 }
 
 fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,

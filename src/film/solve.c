@@ -15,7 +15,10 @@ fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
       fg_film_open(ctx, &mesh, report->options.top == FG_FILM_SAGGING, &workspace->film);
   if (status == FG_OK) status = fg_film_case_open(ctx, workspace->film.columns, &workspace->at);
   if (status == FG_OK) status = fg_film_case_open(ctx, workspace->film.columns, &workspace->before);
+  if (status == FG_OK)
+    status = fg_film_case_open(ctx, workspace->film.columns, &workspace->spare_before);
   if (status == FG_OK) status = fg_film_state_open(ctx, &workspace->film, &workspace->state);
+  if (status == FG_OK) status = fg_film_state_open(ctx, &workspace->film, &workspace->spare);
   if (status != FG_OK) fg_film_workspace_close(workspace);
   return status;
 }
@@ -23,7 +26,9 @@ fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
 void fg_film_workspace_close(fg_film_workspace *workspace) {
   fg_film_case_close(&workspace->at);
   fg_film_case_close(&workspace->before);
+  fg_film_case_close(&workspace->spare_before);
   fg_film_state_close(&workspace->state);
+  fg_film_state_close(&workspace->spare);
   fg_film_close(&workspace->film);
 }
 
@@ -95,4 +100,49 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report, f
   FG_TRY(status);
   fg_film_case_copy(&b->at, b->film.columns, &b->before);
   return fill_result(ctx, report, b, result);
+}
+
+/* Speeds of a faster rotor, whose film is thicker, over that which is sought. */
+static const double faster[] = {1.1, 4};
+
+static fg_status solve_from_faster(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+                                   const fg_film_bearing *bearing, double speed_rpm,
+                                   fg_film_result *result) {
+  for (size_t i = 0; i < sizeof faster / sizeof *faster; i++) {
+    FG_TRY(
+        fg_film_solve_bearing(ctx, r, b, bearing, faster[i] * speed_rpm, FG_FILM_AFRESH, result));
+    if (result->outcome == FG_FILM_UNSOLVED) continue;
+    FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result));
+    if (result->outcome == FG_FILM_SOLVED) return FG_OK;
+  }
+  return FG_OK;
+}
+
+fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+                            const fg_film_bearing *bearing, double speed_rpm,
+                            fg_film_result *result) {
+  fg_film_result other;
+  FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_AFRESH, result));
+  if (result->outcome == FG_FILM_SOLVED) return FG_OK;
+  FG_TRY(solve_from_faster(ctx, r, b, bearing, speed_rpm, &other));
+  bool gained = other.outcome < result->outcome && other.speed_rpm == speed_rpm;
+  if (!gained) /* back to the first */
+    return fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_AFRESH, result);
+  *result = other;
+  return FG_OK;
+}
+
+fg_status fg_film_seek_onward(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+                              const fg_film_bearing *bearing, double speed_rpm,
+                              fg_film_result *result) {
+  size_t columns = b->film.columns;
+  fg_film_state_copy(&b->film, &b->state, &b->spare);
+  fg_film_case_copy(&b->before, columns, &b->spare_before);
+  FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result));
+  if (result->outcome != FG_FILM_UNSOLVED) return FG_OK;
+  FG_TRY(fg_film_seek_film(ctx, r, b, bearing, speed_rpm, result));
+  if (result->outcome != FG_FILM_UNSOLVED) return FG_OK;
+  fg_film_state_copy(&b->film, &b->spare, &b->state);
+  fg_film_case_copy(&b->spare_before, columns, &b->before);
+  return FG_OK;
 }

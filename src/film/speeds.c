@@ -33,12 +33,18 @@ typedef struct speed_map {
   size_t speeds;
 } speed_map;
 
+/* A speed of the map: on from the one before, or by every path. */
 static fg_status solve_speed(fg_context *ctx, const speed_map *map, fg_film_workspace *workspace,
-                             double speed_rpm, fg_film_start start, fg_film_result *at) {
+                             double speed_rpm, bool onward, fg_film_result *at) {
   fg_film_modes unused;
-  FG_TRY(fg_film_solve_bearing(ctx, map->report, workspace, map->bearing, speed_rpm, start, at));
+  const fg_film_report *r = map->report;
+  at->outcome = FG_FILM_UNSOLVED;
+  if (onward)
+    FG_TRY(fg_film_solve_bearing(ctx, r, workspace, map->bearing, speed_rpm, FG_FILM_ONWARD, at));
+  if (at->outcome == FG_FILM_UNSOLVED)
+    FG_TRY(fg_film_seek_film(ctx, r, workspace, map->bearing, speed_rpm, at));
   if (!map->with_modes) return FG_OK;
-  return fg_film_find_modes(ctx, map->report, workspace, at, &unused);
+  return fg_film_find_modes(ctx, r, workspace, at, &unused);
 }
 
 /* Two speeds between which the rotor gets unstable. */
@@ -63,7 +69,7 @@ static fg_status refine_threshold(fg_context *ctx, const speed_map *map,
     fg_film_result at;
     root = next;
     if (close) break;
-    FG_TRY(solve_speed(ctx, map, workspace, exp(root), FG_FILM_AFRESH, &at));
+    FG_TRY(solve_speed(ctx, map, workspace, exp(root), false, &at));
     double margin = between->margin(r, &at);
     if (isnan(margin)) return FG_OK;
     int end = margin > 0 ? 0 : 1;
@@ -89,6 +95,17 @@ static fg_status find_threshold(fg_context *ctx, const speed_map *map, fg_film_w
   return FG_OK;
 }
 
+/* Speeds without a film above one that has one are solved on from that. */
+static fg_status close_gaps(fg_context *ctx, speed_map *map, fg_film_workspace *workspace) {
+  for (size_t i = 1; i < map->speeds; i++) {
+    fg_film_result *at = &map->speed[i], *below = &map->speed[i - 1];
+    if (at->outcome != FG_FILM_UNSOLVED || below->outcome == FG_FILM_UNSOLVED) continue;
+    FG_TRY(solve_speed(ctx, map, workspace, below->speed_rpm, false, below));
+    FG_TRY(solve_speed(ctx, map, workspace, at->speed_rpm, below->outcome != FG_FILM_UNSOLVED, at));
+  }
+  return FG_OK;
+}
+
 /* From the highest speed, where the film is thickest, downwards: each solution leads to the next.
  */
 static fg_status solve_speed_map(fg_context *ctx, speed_map *map, fg_film_workspace *workspace) {
@@ -97,14 +114,14 @@ static fg_status solve_speed_map(fg_context *ctx, speed_map *map, fg_film_worksp
   FG_TRY(fg_memory_allocate(ctx, o->speeds, sizeof *map->speed, &block));
   map->speed = block;
   map->speeds = o->speeds;
-  fg_film_start start = FG_FILM_AFRESH;
+  bool onward = false;
   for (size_t i = map->speeds; i-- > 0;) {
     double share = map->speeds > 1 ? (double)i / (double)(map->speeds - 1) : 0;
     double speed = o->speed_low_rpm * pow(o->speed_high_rpm / o->speed_low_rpm, share);
-    FG_TRY(solve_speed(ctx, map, workspace, speed, start, &map->speed[i]));
-    start = map->speed[i].outcome == FG_FILM_UNSOLVED ? FG_FILM_AFRESH : FG_FILM_ONWARD;
+    FG_TRY(solve_speed(ctx, map, workspace, speed, onward, &map->speed[i]));
+    onward = map->speed[i].outcome != FG_FILM_UNSOLVED;
   }
-  return FG_OK;
+  return close_gaps(ctx, map, workspace);
 }
 
 fg_status fg_film_map_speeds(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {

@@ -153,15 +153,57 @@ near "clearance by thickness" "$(value worth.json "r['sensitivities'][3]['cleara
 near "stiffness by thickness" "$(value worth.json "r['sensitivities'][3]['stiffness_pct_per_pct']")" 3 0.05
 
 # A bore: one of the design's radius changes nothing, an oval one closes the clearance at 0 and 180 degrees.
-printf 'angle_deg,radius_mm\n0,20.73\n180,20.73\n' >round.csv
+printf 'angle_deg,radius_mm\n0,20.73\n90,20.73\n180,20.73\n270,20.73\n360,20.73\n' >round.csv
 awk 'BEGIN {print "angle_deg,radius_mm"; for (a = 350; a >= 0; a -= 10) printf "%d,%.6f\n", a, 20.73 - 0.004 * cos(2 * a * 3.14159265 / 180)}' >oval.csv
 expect 0 "lift-off" "$program" film $fast --speeds 30000:90000:2 --bore round.csv -o round.json --table -
 near "a round bore" "$(value round.json "r['bearing']['critical_mass_kg'] / r['perfect']['critical_mass_kg']")" 1 1e-7
 expect 0 "load capacity" "$program" film $fast --speeds 30000:90000:2 --bore oval.csv -o oval.json --table -
 near "an oval bore" "$(value oval.json "[c['clearance_um'] for c in r['field'] if abs(c['angle_deg']) < 1e-6][0]")" 36 1e-3
 valid film.schema.json oval.json
-printf 'angle_deg,radius_mm\n0,41\n' >wide.csv
-expect 65 "not that of a bore" "$program" film $fast --bore wide.csv
+bore() { # bore EXIT WORDS ROW...: a profile of a row per 10 degrees, whose rows are changed by awk's ROW
+  awk -v OFS=, "BEGIN {print \"angle_deg,radius_mm\"; for (i = 0; i < 36; i++) {a = 10 * i; r = 20.73; $3; print a, r}}" >bore.csv
+  expect "$1" "$2" "$program" film $fast --speeds 30000:90000:2 --bore bore.csv --table -
+}
+bore 0 "lift-off" ""
+bore 65 "row 5: a radius of 41.46 mm is not that of a bore of 20.73 mm; it looks like a diameter" 'if (i == 4) r = 41.46'
+bore 65 "row 1: .*; it looks like micrometres" 'r = 20730'
+bore 65 "row 1: .*; it looks like inches" 'r = 0.8161'
+bore 65 "no radius from 60 to 100 degrees" 'if (i > 6 && i < 10) continue'
+bore 65 "no radius from .*are its angles radians" 'a *= 3.14159265 / 180'
+bore 65 "80 degrees are there twice, with 20.73 and 20.74 mm" 'if (i == 9) {a = 80; r = 20.74}'
+bore 0 "lift-off" 'if (i == 35) {a = 360}'
+bore 65 "row 3" 'if (i == 2) r = "NaN"'
+bore 65 "row 3" 'if (i == 2) r = "twenty"'
+sed -i 's/radius_mm/radius_um/' bore.csv
+expect 65 "radius_mm" "$program" film $fast --bore bore.csv
+
+# A lift-off speed: that of a bearing that is wider by 2 um tells 2 um, its own tells none, and its u goes into the shift's.
+expect 0 "" "$program" film $fast --clearance 42 --compliance 0.638095 --speeds 30000:90000:2 -o wider.json
+lifted=$(value wider.json "r['lift_off_rpm']")
+expect 0 "wider, 42" "$program" film $fast --speeds 30000:90000:2 --lift-off $lifted --u-lift-off 50 -o lifted.json --table -
+valid film.schema.json lifted.json
+near "shift by the lift-off speed" "$(value lifted.json "r['lift_off_test']['clearance_shift_um']")" 2 0.01
+own=$(value lifted.json "r['lift_off_rpm']")
+checks - lifted.json wider.json <<'END' || fail "u of the lift-off"
+import json, sys
+l, w = (json.load(open(n)) for n in sys.argv[1:])
+t, slope = l["lift_off_test"], 2 / (w["lift_off_rpm"] - l["lift_off_rpm"])
+assert abs(t["u_clearance_shift_um"] / (50 * slope) - 1) < 0.1 and not t["agrees"] and t["u_predicted_rpm"] is None, (t, slope)
+END
+expect 0 "agrees with" "$program" film $fast --speeds 30000:90000:2 --lift-off $own --u-lift-off 50 -o lifted.json --table -
+expect 0 "No clearance within" "$program" film $fast --speeds 30000:90000:2 --lift-off 200000 --table -
+
+# Near lift-off a film may lie before or behind the gap between two pads, and one path meets one of both: no speed of the map between two
+# that have a film is without.
+expect 0 "" "$program" film $fast --speeds 3500:6000:60 --speeds-out gaps.csv -o gaps.json
+checks - gaps.csv <<'END' || fail "gaps of the map"
+import csv, sys
+outcomes = [row["outcome"] for row in csv.DictReader(open(sys.argv[1]))]
+first = next(i for i, o in enumerate(outcomes) if o != "unsolved")
+assert 5 < first < 30 and "unsolved" not in outcomes[first:], outcomes
+END
+expect 64 "is of --lift-off" "$program" film $fast --u-lift-off 7
+expect 64 "lift-off: '0' is not a number" "$program" film $fast --lift-off 0
 [ "$(value oval.json "20 < r['load_capacity_n'] and r['lift_off_rpm'] < 60000")" = True ] || fail "limits of the load and the speed"
 
 # A load beyond the film, and a touching one.

@@ -215,6 +215,10 @@ static bool knows_threshold(const fg_subject *s) {
   return isfinite(report_of(s)->tolerance.threshold_rpm);
 }
 
+static bool has_lift_off(const fg_subject *s) {
+  return report_of(s)->lift_off.asked;
+}
+
 static bool has_uncertainty(const fg_subject *s) {
   return report_of(s)->u.draws > 0;
 }
@@ -398,6 +402,8 @@ static const fg_member report_rows[] = {
      .words = "largest load at this speed with a film of touching_um at least"},
     {FG_NUMBER("lift_off_rpm", fg_film_report, lift_off_rpm),
      .words = "lowest speed under this load with such a film"},
+    {FG_OBJECT("lift_off_test", fg_film_report, lift_off, &fg_film_lift_off_members),
+     .present = has_lift_off, .words = "lift-off speed as measured, against the bearing's"},
     {FG_ARRAY("coefficients", fg_film_report, frequency, frequencies, &coefficient_members),
      .options = FG_MEMBER_ON_LINE, .words = "stiffness and damping of the film over the whirl"},
     {FG_LIST("speeds", fg_film_report, speed, speeds, &fg_film_result_members),

@@ -19,7 +19,8 @@ fg_member_element fg_film_share_at;
 extern const fg_members fg_film_mode_members;
 fg_member_element fg_film_mode_at;
 
-/* Of an fg_film_tolerance and an fg_film_uncertainty. */
+/* Of an fg_film_tolerance, an fg_film_uncertainty, an fg_film_lift_off. */
+extern const fg_members fg_film_lift_off_members;
 extern const fg_members fg_film_tolerance_members, fg_film_uncertainty_members;
 
 /* Of an fg_film_report in a lot's report; whole: the film. */
@@ -40,7 +41,7 @@ void fg_film_tolerance_words(const fg_film_report *report, char *text, size_t si
 /* "stable", "unstable", "stable at every mass" for the rotor of the report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
 
-enum { FG_FILM_NOTES = 6, FG_FILM_NOTE = 400 };
+enum { FG_FILM_NOTES = 7, FG_FILM_NOTE = 400 };
 /* Writes what the reader must know of this run; returns the number of notes. */
 size_t fg_film_notes(const fg_film_report *report, char notes[FG_FILM_NOTES][FG_FILM_NOTE]);
 

@@ -82,6 +82,22 @@ static void note_uncertainty(const fg_film_report *r, char *note) {
       2 * u->min_film_um, 2 * u->eccentricity, 2 * u->critical_mass_kg, u->draws, u->solved.count);
 }
 
+static void note_lift_off(const fg_film_report *r, char *note) {
+  const fg_film_lift_off *l = &r->lift_off;
+  if (isnan(l->shift_um)) {
+    snprintf(note, FG_FILM_NOTE,
+             "No clearance within 0.6 of C of this bearing's lifts off at %.4g rpm under %.4g N.",
+             l->rpm, r->options.load_n);
+    return;
+  }
+  snprintf(note, FG_FILM_NOTE,
+           "Measured lift-off at %.4g rpm (model: %.4g): of clearances %.2g ± %.2g um %s, "
+           "%.4g um in the mean. It %s the bearing's clearance as stated (U %.2g um).",
+           l->rpm, l->predicted_rpm, fabs(l->shift_um), 2 * l->u_shift_um,
+           l->shift_um < 0 ? "closer" : "wider", l->clearance_um,
+           l->agrees ? "agrees with" : "contradicts", 2 * l->u_bearing_um);
+}
+
 size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_NOTE]) {
   const fg_film_options *o = &r->options;
   size_t count = 0;
@@ -98,6 +114,7 @@ size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_
              "does not hold.",
              o->touching_um);
   if (r->u.draws) note_uncertainty(r, notes[count++]);
+  if (r->lift_off.asked) note_lift_off(r, notes[count++]);
   if (r->tolerance.asked) fg_film_tolerance_words(r, notes[count++], FG_FILM_NOTE);
   if (o->pads == 0)
     snprintf(notes[count++], FG_FILM_NOTE,
