@@ -170,11 +170,15 @@ static void take_likeliest_rivals(const fg_evidence_search *s, fg_evidence_verdi
   add_tie(&s->models[m], v);
 }
 
-/* Steps count once: rows are lost one by one, for one reason. */
+/* Steps count once: rows are lost one by one, for one reason. Scales and shears count not: every
+ * scanner has them. */
 static size_t count_pieces(const fg_evidence_model *model) {
   size_t count = 0, steps = 0;
-  for (size_t k = 0; k < model->parts; k++)
-    *(model->part[k]->effect->jumps ? &steps : &count) += 1;
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_effect *effect = model->part[k]->effect;
+    if (effect->numbers == FG_EFFECT_RATIO) continue;
+    *(effect->jumps ? &steps : &count) += 1;
+  }
   return count + (steps > 0);
 }
 
