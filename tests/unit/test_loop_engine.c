@@ -101,8 +101,8 @@ static void clean_runs_are_clean(void **state) {
 
 static void a_trend_is_found_with_its_size(void **state) {
   (void)state;
-  size_t covered = 0;
-  for (uint64_t seed = 21; seed <= 30; seed++) {
+  size_t covered = 0, tried = 0;
+  for (uint64_t seed = 21; seed <= 30; seed += test_step(4), tried++) {
     fixture f;
     runs_data data;
     make_runs(seed, &data);
@@ -124,7 +124,7 @@ static void a_trend_is_found_with_its_size(void **state) {
     assert_true(claim->p_value < 0.01);
     clear(&f);
   }
-  assert_true(covered >= 8);
+  assert_true(5 * covered >= 4 * tried - 1);
 }
 
 static void a_drift_is_no_correlation(void **state) {

@@ -175,7 +175,7 @@ static void a_plain_foil_is_clean(void **state) {
 static void bumps_and_lands_that_are_missing(void **state) {
   static const int missing[] = {1, 2, 0x10, 0x1e, 0xaa, 0x1fe, 0x1ff};
   (void)state;
-  for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
+  for (size_t i = 0; i < sizeof missing / sizeof *missing; i += test_step(3)) {
     in_row("missing[%zu]", i);
     char what[64];
     odd_input in = one_foil(9);
@@ -211,7 +211,7 @@ static void edges_with_faults(void **state) {
 static void noise_from_nothing_to_much(void **state) {
   static const double noise[] = {0, 1e-6, 1e-3, 5, 50};
   (void)state;
-  for (size_t i = 0; i < sizeof noise / sizeof *noise; i++) {
+  for (size_t i = 0; i < sizeof noise / sizeof *noise; i += test_step(2)) {
     in_row("noise[%zu]", i);
     char what[64];
     odd_input in = one_foil(5);
@@ -313,7 +313,7 @@ static void plates(void **state) {
   static const size_t counts[] = {1, 2, 3, 7, ODD_DISCS};
   (void)state;
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
-    for (int kind = 0; kind < (counts[i] == ODD_DISCS ? 1 : 4); kind++) {
+    for (int kind = 0; kind < (counts[i] == ODD_DISCS ? 1 : 4); kind += (int)test_step(3)) {
       char what[64];
       odd_input in = plate(counts[i], kind & 1, kind & 2);
       snprintf(what, sizeof what, "%zu discs of kind %d", counts[i], kind);
