@@ -31,8 +31,7 @@ OWN_ROW = {
     "quintic": "scan.optical_quintic", "ripple_growth": "scan.ripple_growth", "lobes": "part.lobes", "dent": "part.dent",
 }  # fmt: skip
 # Listed effects that are the cause itself, cut into pieces: a ripple that grows, a stair of rows, gaps of chips.
-# The kinds of loop_kinds_last.py have none yet: who invents kinds does not choose the names that count as right. They are
-# to be filled, from physics and before the first run, by who knows the list; so is OWN_ROW.
+# None of loop_kinds_last.py is a row or pieces of one: looked at before their first run by who knows the list.
 ALSO_RIGHT = {
     "ripple_growth": {"scan.carriage_ripple"},
     "stairs": {"scan.row_step"},
