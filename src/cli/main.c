@@ -81,6 +81,10 @@ int main(int argc, char **argv) {
   /* Else every thread reserves 64 MiB of address space for itself, which counts where that is
    * limited. */
   mallopt(M_ARENA_MAX, 2);
+  /* Memory that is given back to the system after every step is cleared by it for the next. */
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  mallopt(M_TOP_PAD, 1 << 20);
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
   if (argc < 2) {
     print_help(stderr);
     return fg_status_exit_code(FG_ERR_USAGE);

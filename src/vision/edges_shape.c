@@ -3,6 +3,7 @@
 #include "vision/edge_work.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -177,15 +178,36 @@ static bool find_clipping(const fg_edge_work *work, const value_counts *counts) 
   return counts->total && piles_up(work, counts, true) != piles_up(work, counts, false);
 }
 
-static value_counts count_values(const fg_edge_work *work) {
-  value_counts counts = {.total = 0};
-  for (size_t c = 0; c < work->chunk_count; c++)
-    for (size_t i = 0; i < work->bands[c].count; i++) {
-      float value = fminf(fmaxf(work->bands[c].pixels[i].value, 0), 255);
-      counts.of[(int)(value + 0.5f)]++;
-      counts.total++;
-    }
-  return counts;
+typedef struct count_task {
+  const fg_edge_work *work;
+  value_counts *chunks;
+} count_task;
+
+static fg_status count_chunk(fg_context *ctx, void *shared, size_t chunk) {
+  const count_task *task = shared;
+  const fg_pixel_band *band = &task->work->bands[chunk];
+  value_counts *counts = &task->chunks[chunk];
+  (void)ctx;
+  for (size_t i = 0; i < band->count; i++) {
+    float value = band->pixels[i].value;
+    value = value > 0 ? value : 0;
+    counts->of[(int)((value < 255 ? value : 255) + 0.5f)]++;
+  }
+  counts->total = band->count;
+  return FG_OK;
+}
+
+static fg_status count_values(fg_context *ctx, const fg_edge_work *work, value_counts *counts) {
+  count_task task = {.work = work};
+  FG_TRY(fg_memory_allocate(ctx, work->chunk_count, sizeof *task.chunks, (void **)&task.chunks));
+  fg_status status = fg_parallel_run(ctx, work->threads, work->chunk_count, count_chunk, &task);
+  for (size_t c = 0; c < work->chunk_count; c++) {
+    for (int i = 0; i < 256; i++)
+      counts->of[i] += task.chunks[c].of[i];
+    counts->total += task.chunks[c].total;
+  }
+  free(task.chunks);
+  return status;
 }
 
 /* Returns the mean distance of the counts in use; values of too few pixels are dust's. */
@@ -209,7 +231,8 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   tone_task task = {.work = work};
   double values[GAMMA_SEGMENTS], u = 0;
   int count = 0;
-  const value_counts pixels = count_values(work);
+  value_counts pixels = {.total = 0};
+  FG_TRY(count_values(ctx, work, &pixels));
   work->gamma = 1;
   /* A clipped level looks like a tone curve, and so does a staircase. */
   work->clipped = find_clipping(work, &pixels);

@@ -21,6 +21,7 @@ typedef struct strip_curve {
   double *scratch;            /* per segment */
   const double *sd;           /* per segment */
   size_t unknowns;
+  double *deviations; /* per segment, from the curve; NaN where the fit failed */
   double coefficients[BASIS_MAX];
   double real; /* share of the scatter about the curve beyond the fits' own */
 } strip_curve;
@@ -97,24 +98,36 @@ static double segment_value(const fg_profile_fit *fit, int i) {
   return fit->good ? values[i] : NAN;
 }
 
-/* Evaluates the curve at every station, plus the real share of the segments' own deviation, linear
- * between their middles. */
-static void spread_curve(const strip_curve *c, int i) {
-  const fg_edge_work *work = c->work;
+static void find_deviations(strip_curve *c) {
+  for (size_t s = 0; s < c->work->segment_count; s++)
+    c->deviations[s] = c->values[s] - evaluate_curve(c, c->basis[s]);
+}
+
+/* The curve's value at a station, `at` segments along the strip, plus the real share of the
+ * segments' own deviation, linear between their middles. */
+static double spread_value(const strip_curve *c, const double *basis, double at) {
+  double value = evaluate_curve(c, basis);
+  size_t s0 = (size_t)at, s1 = s0 + 1 < c->work->segment_count ? s0 + 1 : s0;
+  for (int side = 0; side < 2 && c->real > 0; side++) {
+    double share = side ? at - (double)s0 : 1 - (at - (double)s0);
+    double deviation = c->deviations[side ? s1 : s0];
+    if (isfinite(deviation)) value += c->real * share * deviation;
+  }
+  return value;
+}
+
+/* Evaluates all curves at every station. */
+static void spread_curves(const strip_curve *curves) {
+  const fg_edge_work *work = curves->work;
   double basis[BASIS_MAX];
   for (size_t k = 0; k < work->reference->count; k++) {
     fill_basis(work->reference, k, basis);
-    double value = evaluate_curve(c, basis);
     double at = ((double)k - FG_SEGMENT_STATIONS / 2.0) / FG_SEGMENT_STATIONS;
     at = fmin(fmax(at, 0), (double)work->segment_count - 1);
-    size_t s0 = (size_t)at, s1 = s0 + 1 < work->segment_count ? s0 + 1 : s0;
-    for (int side = 0; side < 2 && c->real > 0; side++) {
-      size_t s = side ? s1 : s0;
-      double share = side ? at - (double)s0 : 1 - (at - (double)s0);
-      if (isfinite(c->values[s]))
-        value += c->real * share * (c->values[s] - evaluate_curve(c, c->basis[s]));
+    for (int i = 0; i < FG_EDGE_SHAPE_VALUES; i++) {
+      double value = spread_value(&curves[i], basis, at);
+      *station_value(&work->stations[k], i) = (float)(i >= 5 ? fmax(value, 0.3) : value);
     }
-    *station_value(&work->stations[k], i) = (float)(i >= 5 ? fmax(value, 0.3) : value);
   }
 }
 
@@ -204,8 +217,10 @@ static void summarise_shape(fg_edge_work *work, double *scratch) {
 fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local) {
   size_t count = work->segment_count, good = work->good_segments;
   strip_curve c = {.work = work, .unknowns = good >= 20 ? BASIS_MAX : good >= 8 ? 3 : 1};
+  strip_curve curves[FG_EDGE_SHAPE_VALUES];
   double *memory = NULL;
-  FG_TRY(fg_memory_allocate(ctx, count, (BASIS_MAX + 3) * sizeof *memory, (void **)&memory));
+  FG_TRY(fg_memory_allocate(ctx, count, (BASIS_MAX + 3 + FG_EDGE_SHAPE_VALUES) * sizeof *memory,
+                            (void **)&memory));
   c.basis = (double(*)[BASIS_MAX])memory;
   c.values = memory + BASIS_MAX * count;
   c.scratch = c.values + count;
@@ -223,8 +238,11 @@ fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local)
     }
     find_strip_curve(&c);
     if (!local) c.real = 0;
-    spread_curve(&c, i);
+    curves[i] = c;
+    curves[i].deviations = sd + (size_t)(1 + i) * count;
+    find_deviations(&curves[i]);
   }
+  spread_curves(curves);
   summarise_shape(work, c.scratch);
   free(memory);
   return FG_OK;

@@ -153,16 +153,17 @@ static void copy_blocks(const fg_tiles *tiles, int32_t column, int32_t strip, fl
            FG_BLOCKS_PER_TILE * sizeof *out);
 }
 
-/* Median step between blocks that lie side by side. */
-static float median_step(const float *blocks) {
-  float steps[FG_BLOCKS_PER_TILE * (FG_BLOCKS_PER_TILE - 1)];
-  int count = 0;
+/* Returns true when a range is many times the median step between blocks that lie side by side:
+ * when it is for more than half of the steps. */
+static bool is_beyond_steps(const float *blocks, float range) {
+  enum { STEPS = FG_BLOCKS_PER_TILE * (FG_BLOCKS_PER_TILE - 1) };
+  int small = 0;
   for (int y = 0; y < FG_BLOCKS_PER_TILE; y++)
     for (int x = 1; x < FG_BLOCKS_PER_TILE; x++) {
       const float *b = blocks + y * FG_BLOCKS_PER_TILE + x;
-      steps[count++] = fabsf(b[0] - b[-1]);
+      small += range > CONTRAST_OVER_STEP * fabsf(b[0] - b[-1]);
     }
-  return fg_select_float(steps, (size_t)count, (size_t)count / 2);
+  return small > STEPS / 2;
 }
 
 static bool has_contrast(const float *blocks) {
@@ -172,7 +173,7 @@ static bool has_contrast(const float *blocks) {
     high = blocks[i] > high ? blocks[i] : high;
   }
   if (high - low <= CONTRAST_MIN) return false;
-  return high - low > CONTRAST_MAX || high - low > CONTRAST_OVER_STEP * median_step(blocks);
+  return high - low > CONTRAST_MAX || is_beyond_steps(blocks, high - low);
 }
 
 static void mark_wanted(fg_tiles *tiles, int32_t strip) {
