@@ -121,7 +121,11 @@ static void put_effects(width_fit *f, const fg_width_findings *findings, double 
 }
 
 /* Removes the stretch by the scanner's fields: it is no effect of the width. */
-static void remove_stretch(width_fit *f, const fg_effect_set *set, double *work) {
+static void remove_stretch(width_fit *f, const fg_effect_set *set, const double *stretch_um,
+                           double *work) {
+  for (size_t i = 0; stretch_um && i < f->count; i++)
+    f->rows[i].value_um -= stretch_um[f->rows[i].row];
+  if (stretch_um) return;
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect_found *effect = &set->effects[e];
     size_t count = fg_effect_width_columns(f->edge_fit, effect->kind, effect->shape, work);
@@ -373,7 +377,7 @@ static void list_effects(const fg_edge_fit *edge_fit, fg_width_findings *finding
 }
 
 fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
-                          fg_width_findings *findings) {
+                          const double *stretch_um, fg_width_findings *findings) {
   width_fit *f = NULL;
   double *work = NULL;
   fg_status status = FG_OK;
@@ -390,7 +394,7 @@ fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg
   put_effects(f, findings, work);
   find_view_means(f);
   findings->rms_before_um = rms_um(f, findings, false);
-  remove_stretch(f, set, work);
+  remove_stretch(f, set, stretch_um, work);
   FG_TRY_EXIT(search_widths(ctx, f, findings));
   findings->rms_after_um = rms_um(f, findings, true);
 exit:

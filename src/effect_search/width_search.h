@@ -31,8 +31,9 @@ typedef struct fg_width_findings {
   double rms_before_um, rms_after_um; /* of half the width about its scan's mean */
 } fg_width_findings;
 
-/* `set`: in force, fitted to the rows. Held-out scans are not used. */
+/* `set`: in force, fitted to the rows. `stretch_um`: of half the width by the scanner, one number
+ * per row; NULL: that of the set. Held-out scans are not used. */
 fg_status fg_search_width(fg_context *ctx, const fg_edge_fit *edge_fit, const fg_effect_set *set,
-                          fg_width_findings *findings);
+                          const double *stretch_um, fg_width_findings *findings);
 
 #endif

@@ -3,7 +3,10 @@
  * on the part is its form, and its circles are the least-squares circles through it as it is
  * (ISO 12181's associated circle). */
 #include <math.h>
+#include <stdlib.h>
 
+#include "core/memory.h"
+#include "effect_search/width_search.h"
 #include "measure/again.h"
 #include "scan_loop/state.h"
 
@@ -119,4 +122,32 @@ fg_status fg_scan_loop_correct_by_evidence(fg_context *ctx, const fg_scan_loop *
     widen_by_effects(fit, &loop->before[i], &after[i]);
   }
   return FG_OK;
+}
+
+/* ---- the strip's width ---- */
+
+/* Fills the change of half the width by the mean displacement, um. */
+static void fill_stretch(const fg_scan_loop *loop, double *stretch_um) {
+  for (size_t i = 0; i < loop->edge_fit.row_count; i++) {
+    const fg_edge_fit_row *row = &loop->edge_fit.rows[i];
+    fg_point n = row->normal, d[2];
+    for (int side = 0; side < 2; side++) {
+      double w = side ? -row->half_width_mm : row->half_width_mm;
+      d[side] = fg_displacement_at(&loop->displacement,
+                                   (fg_point){row->ideal.x + w * n.x, row->ideal.y + w * n.y});
+    }
+    stretch_um[i] = -500 * ((d[0].x - d[1].x) * n.x + (d[0].y - d[1].y) * n.y);
+  }
+}
+
+fg_status fg_scan_loop_find_width(fg_context *ctx, fg_scan_loop *loop) {
+  double *stretch_um = NULL;
+  if (loop->by_evidence && loop->scanner_is_suspect) {
+    FG_TRY(fg_memory_allocate(ctx, loop->edge_fit.row_count, sizeof *stretch_um,
+                              (void **)&stretch_um));
+    fill_stretch(loop, stretch_um);
+  }
+  fg_status status = fg_search_width(ctx, &loop->edge_fit, &loop->set, stretch_um, &loop->width);
+  free(stretch_um);
+  return status;
 }

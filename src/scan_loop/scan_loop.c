@@ -250,7 +250,7 @@ static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_scan_loop_put_form_errors(ctx, loop));
-  FG_TRY(fg_search_width(ctx, &loop->edge_fit, &loop->set, &loop->width));
+  FG_TRY(fg_scan_loop_find_width(ctx, loop));
   loop->tone = fg_scan_loop_find_tone(loop, true);
   widen_scales(loop);
   loop->verdict = fg_scan_loop_outcome(loop);

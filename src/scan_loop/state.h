@@ -110,6 +110,9 @@ fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
  * the discs do not determine the level. */
 fg_model_tone fg_scan_loop_find_tone(const fg_scan_loop *loop, bool searched);
 
+/* Finds effects of the strip's width beside its stretch by the scanner. */
+fg_status fg_scan_loop_find_width(fg_context *ctx, fg_scan_loop *loop);
+
 /* Corrects all of the loop's measurements by the mean displacement of the scanner over all models;
  * the fit has the uncertainties that this adds. */
 fg_status fg_scan_loop_correct_by_evidence(fg_context *ctx, const fg_scan_loop *loop,

@@ -140,7 +140,7 @@ static void the_search_of_the_width_knows_every_row(void **state) {
     for (size_t i = 0; i < f.edge_fit.row_count; i++)
       f.edge_fit.rows[i].half_width_mm +=
           (AMPLITUDE_UM * f.columns[i] + NOISE_UM * random_gaussian(&seed)) / 1000;
-    assert_ok(&ctx, fg_search_width(&ctx, &f.edge_fit, &none, &findings));
+    assert_ok(&ctx, fg_search_width(&ctx, &f.edge_fit, &none, NULL, &findings));
     for (size_t e = 0; e < findings.count; e++) {
       if (findings.each[e].found != (findings.each[e].effect.kind == effect))
         fail_msg("the width with %s in it is taken wrongly", effect->id);
