@@ -32,12 +32,12 @@ static void mean_shape(const fg_edge_work *work, size_t first, size_t last, doub
 }
 
 /* Adds a pixel, whose place is counted from the nearer edge. */
-static void add_pixel(const fg_driven_table *table, double half_px, double radius_px,
+static void add_pixel(const fg_driven_table *table, double half_px, const float reach_px[2],
                       fg_edge_station *s, const fg_band_pixel *p, float limit) {
   float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
   int side = right > left;
   float d = side ? right : left, model, rate;
-  if (d > (float)FG_REACH_BLURS * hypotf(s->blur_px[side], (float)radius_px)) return;
+  if (d > reach_px[side]) return;
   float from_middle = (float)half_px + d;
   if (!fg_driven_table_at(table, side ? from_middle : -from_middle, &model, &rate)) return;
   if ((model >= 254.5f && p->value >= 254.5f) || (model <= 0.5f && p->value <= 0.5f)) return;
@@ -68,11 +68,16 @@ fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t 
   }
   double radius = work->driver->values[FG_DRIVER_RADIUS];
   if (work->driver->values[FG_DRIVER_AMOUNT] == 0) radius = 0;
+  float reach_px[FG_CHUNK_STATIONS][2];
+  for (size_t i = first; i <= last; i++)
+    for (int side = 0; side < 2; side++)
+      reach_px[i - first][side] =
+          (float)FG_REACH_BLURS * hypotf(work->stations[i].blur_px[side], (float)radius);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     size_t station = (size_t)band->pixels[i].station, k = (station - first) / BLOCK_STATIONS;
-    add_pixel(&tables.list[k], half_px[k], radius, &work->stations[station], &band->pixels[i],
-              limit);
+    add_pixel(&tables.list[k], half_px[k], reach_px[station - first], &work->stations[station],
+              &band->pixels[i], limit);
   }
   fg_driven_tables_free(&tables);
   return FG_OK;

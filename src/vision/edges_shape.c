@@ -45,6 +45,7 @@ static bool is_foreign(const fg_edge_work *work, const fg_band_pixel *p) {
   int side = right > left;
   float d = side ? right : left, model, rate;
   float blur = s->blur_px[side];
+  if (d < (float)FG_REACH_BLURS * blur) return false;
   if (work->driver) blur = hypotf(blur, (float)work->driver->values[FG_DRIVER_RADIUS]);
   if (d < (float)FG_REACH_BLURS * blur) return false;
   fg_edge_tone(work->tables, s->plateau + s->step[side] + s->slope[side] * d, &model, &rate);
