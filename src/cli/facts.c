@@ -272,5 +272,5 @@ char *fg_cli_fill(int key, const char *text, void *input) {
   FILE *out = open_memstream(&whole, &size);
   if (!out) return (char *)(uintptr_t)text;
   fg_facts_write(text, NULL, out);
-  return fclose(out) == 0 ? whole : (char *)(uintptr_t)text;
+  return fclose(out) == 0 && whole ? whole : (char *)(uintptr_t)text;
 }

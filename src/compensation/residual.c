@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/file.h"
@@ -152,11 +153,8 @@ static fg_status make_springback_table(fg_context *ctx, const springback_lots *l
   fprintf(out, "%s,%s\n", declared, response);
   for (size_t i = 0; i < lots->count; i++)
     *rows += put_lot_rows(out, lots, i);
-  bool broken = ferror(out) != 0;
-  if (fclose(out) != 0 || broken) {
-    free(text);
+  if (!fg_stream_keep(out, &text))
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the springback of all lots");
-  }
   fg_status status =
       *rows < ROWS_MIN ? FG_OK : fg_table_parse(ctx, "the lots' springback", text, size, table);
   free(text);

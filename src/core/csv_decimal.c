@@ -58,7 +58,8 @@ fg_status fg_csv_write(fg_context *ctx, bool decimal_comma, fg_csv_writer *write
   FILE *memory = open_memstream(&text, &size);
   if (!memory) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   fg_status status = write(ctx, user, memory);
-  if (fclose(memory) != 0 && status == FG_OK) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  if (!fg_stream_keep(memory, &text) && status == FG_OK)
+    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   if (status == FG_OK) convert_csv(text, size, out);
   free(text);
   return status == FG_OK ? fg_stream_finish(ctx, out, "the table") : status;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "language/catalogue.h"
 
 /* STEPS_MAX: a text that nobody foresaw ends the search for its pattern, not the page. */
@@ -31,13 +32,6 @@ typedef struct matching {
 } matching;
 
 static char *translate(search *at, const char *text);
-
-/* Closes a stream into memory and returns its text; NULL: out of memory. */
-static char *end_text(FILE *out, char **text) {
-  if (fclose(out) == 0) return *text;
-  free(*text);
-  return NULL;
-}
 
 static char *translate_part(search *at, const char *text, size_t length) {
   char *part = strndup(text, length);
@@ -141,7 +135,8 @@ static char *fill_target(const matching *m, const char *target) {
       fputc(*target, out);
     target += at ? length : 1;
   }
-  return end_text(out, &text);
+  fg_stream_keep(out, &text);
+  return text;
 }
 
 static bool may_match(const fg_phrase *phrase, const char *text, size_t length) {
@@ -199,7 +194,8 @@ static char *translate_numbers(const fg_language *language, const char *text) {
   FILE *out = open_memstream(&written, &size);
   if (!out) return NULL;
   fg_numbers_write(language, text, strlen(text), out);
-  return end_text(out, &written);
+  fg_stream_keep(out, &written);
+  return written;
 }
 
 static char *join_parts(char *first, const char *between, char *second) {

@@ -132,11 +132,7 @@ static fg_status sum_asked_design(fg_context *ctx, fg_index_lot *lot) {
   fg_json_object(&json, NULL);
   fg_json_design(&json, "design", &bare);
   fg_json_object_end(&json);
-  bool broken = ferror(out) != 0;
-  if (fclose(out) != 0 || broken) {
-    free(text);
-    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
-  }
+  if (!fg_stream_keep(out, &text)) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
   fg_sha256_text(text, lot->design_sum);
   free(text);
   return FG_OK;

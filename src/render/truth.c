@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/file.h"
 #include "render/spec.h"
 
 #define PI 3.14159265358979323846
@@ -435,9 +436,6 @@ fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char
   FILE *out = open_memstream(json, &length);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the truth");
   write_truth(spec, out);
-  bool broken = ferror(out) != 0;
-  if (fclose(out) == 0 && !broken) return FG_OK;
-  free(*json);
-  *json = NULL;
+  if (fg_stream_keep(out, json)) return FG_OK;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the truth");
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/date.h"
+#include "core/file.h"
 #include "core/json_writer.h"
 #include "core/sha256.h"
 #include "core/text.h"
@@ -42,11 +43,7 @@ static fg_status sum_design(fg_context *ctx, const fg_design *design, char sum[6
   fg_json_object(&json, NULL);
   fg_json_design(&json, "design", &bare);
   fg_json_object_end(&json);
-  bool broken = ferror(memory) != 0;
-  if (fclose(memory) != 0 || broken) {
-    free(text);
-    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
-  }
+  if (!fg_stream_keep(memory, &text)) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
   fg_sha256_text(text, sum);
   free(text);
   return FG_OK;

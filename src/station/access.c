@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "page/page.h"
@@ -24,7 +25,7 @@ void fg_access_refuse(fg_answer *answer, int code, const char *words) {
         out);
   fg_html_text(out, words);
   fputs("</h1><p><a href=\"/\">Back to the newest result</a></p></section></main></html>\n", out);
-  fclose(out);
+  fg_stream_keep(out, &answer->body);
 }
 
 /* ---- users ---- */

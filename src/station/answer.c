@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "foilgauge/file.h"
 #include "language/language.h"
 #include "station/access.h"
@@ -90,7 +91,8 @@ static void write_route_page(fg_inspection *station, const fg_request *request, 
   if (!page->slow) pthread_mutex_lock(&station->database.reading);
   fg_status status = page->write(&ctx, station, station->database.reader, request, out);
   if (!page->slow) pthread_mutex_unlock(&station->database.reading);
-  if (fclose(out) != 0 && status == FG_OK) status = fg_fail(&ctx, FG_ERR_MEMORY, "out of memory");
+  if (!fg_stream_keep(out, &answer->body) && status == FG_OK)
+    status = fg_fail(&ctx, FG_ERR_MEMORY, "out of memory");
   *answer = (fg_answer){.code = 200,
                         .type = page->type,
                         .own_style = page->own_style,
@@ -127,7 +129,7 @@ static void answer_events(fg_inspection *station, const fg_request *request, fg_
   if (!out) return;
   fprintf(out, "retry: 250\nid: %lld\ndata: %s\n\n", news,
           answer->wait || request->last_event < 0 ? "same" : "new");
-  fclose(out);
+  fg_stream_keep(out, &answer->body);
 }
 
 /* Answers a page's heartbeat: the count of news, and the time. The answer confirms a page with
@@ -139,7 +141,7 @@ static void answer_heartbeat(fg_inspection *station, fg_answer *answer) {
   fprintf(out, "%lld ", fg_station_news(station));
   fg_page_time(out, fg_station_now());
   fputc('\n', out);
-  fclose(out);
+  fg_stream_keep(out, &answer->body);
   answer->in_language = true;
 }
 
@@ -198,7 +200,7 @@ void fg_station_give_language(const fg_language *language, fg_answer *answer) {
   if (!out) return;
   fg_status status = page ? write_page_in(language, answer, out)
                           : fg_csv_write(&ctx, true, copy_body, answer, out);
-  if (fclose(out) != 0 || status != FG_OK) {
+  if (!fg_stream_keep(out, &text) || status != FG_OK) {
     free(text);
     return;
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/date.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/report.h"
 #include "page/page.h"
@@ -308,7 +309,6 @@ void fg_cause_write(FILE *out, const fg_cause *cause, const fg_quantity *row, do
   FILE *words = open_memstream(&text, &size);
   if (!words) return;
   fg_cause_write_text(words, cause, row, mean);
-  fclose(words);
-  fg_html_text(out, text ? text : "");
+  fg_html_text(out, fg_stream_keep(words, &text) ? text : "");
   free(text);
 }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "core/date.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/version.h"
 #include "page/page.h"
@@ -136,7 +137,7 @@ static char *format_cause(const fg_cause *cause, const fg_quantity *row, double 
   FILE *out = open_memstream(&text, &size);
   if (!out) return NULL;
   fg_cause_write_text(out, cause, row, mean);
-  fclose(out);
+  fg_stream_keep(out, &text);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/file.h"
 #include "page/page.h"
 #include "station/check.h"
 #include "station/news.h"
@@ -204,7 +205,7 @@ static void join_styles(void) {
   fputs(fg_station_style, out);
   fputs(fg_trend_style, out);
   fputs(fg_station_dark_style, out);
-  fclose(out);
+  fg_stream_keep(out, &whole);
 }
 
 const char *fg_station_style_text(void) {

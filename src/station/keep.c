@@ -54,7 +54,8 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
   FILE *out = status == FG_OK ? open_memstream(&whole, &size) : NULL;
   if (out) {
     fprintf(out, "%s\n%s\n%s", FOILGAUGE_VERSION, recipe, model ? model : "");
-    if (fclose(out) != 0) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a setup");
+    if (!fg_stream_keep(out, &whole))
+      status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a setup");
   } else if (status == FG_OK) {
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a setup");
   }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "page/page.h"
 #include "station/correct.h"
 #include "station/pages.h"
@@ -141,7 +142,8 @@ fg_status fg_page_identity(fg_context *ctx, fg_inspection *station, const fg_ide
   pthread_mutex_lock(&station->database.reading);
   fg_status status = write_conflict_page(ctx, station, asked, out);
   pthread_mutex_unlock(&station->database.reading);
-  if (fclose(out) != 0 && status == FG_OK) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  if (!fg_stream_keep(out, &answer->body) && status == FG_OK)
+    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   answer->code = CONFLICT;
   return status;
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"
@@ -137,7 +138,7 @@ static fg_status try_again(fg_context *ctx, const char *folder, const fg_stored_
   FILE *into = open_memstream(&page, &size);
   if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
   fg_status status = measure_again(ctx, folder, stored, write, into);
-  if (fclose(into) != 0 && status == FG_OK)
+  if (!fg_stream_keep(into, &page) && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
   if (status == FG_OK)
     fwrite(page, 1, size, out);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/file.h"
 #include "report/foil_html.h"
 
 /* Pictures that are kept, of some 150 KB each; that of an older foil is drawn from its scan. */
@@ -15,7 +16,7 @@ static fg_status draw_picture(fg_context *ctx, const fg_measurement *measurement
   FILE *out = open_memstream(html, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
   fg_status status = fg_html_picture(ctx, out, measurement, foil, 0);
-  if (fclose(out) != 0 && status == FG_OK)
+  if (!fg_stream_keep(out, html) && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
   return status;
 }

@@ -5,6 +5,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "foilgauge/file.h"
 #include "foilgauge/foil_kind.h"
 #include "lot/run/folder_lock.h"
@@ -105,7 +106,7 @@ static fg_status write_digest(fg_context *ctx, const fg_station_request *request
   FILE *page = open_memstream(&digest->page, &digest->page_size);
   fg_status status = text && page ? fg_station_digest(ctx, request, text, page)
                                   : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest");
-  bool broken = (text && fclose(text) != 0) | (page && fclose(page) != 0);
+  bool broken = !fg_stream_keep(text, &digest->text) | !fg_stream_keep(page, &digest->page);
   return broken && status == FG_OK ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest")
                                    : status;
 }

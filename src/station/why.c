@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "station/cause_keep.h"
@@ -97,8 +98,8 @@ static void go_to_choice(const char *page, const fg_trend_choice *choice, fg_ans
   FILE *out = open_memstream(&text, &size);
   if (!out) return;
   fg_trend_write_query(out, page, choice);
-  fclose(out);
-  fg_text_clip(answer->location, sizeof answer->location, "%s", text ? text : "/trends");
+  const char *location = fg_stream_keep(out, &text) ? text : "/trends";
+  fg_text_clip(answer->location, sizeof answer->location, "%s", location);
   free(text);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/csv.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
 
@@ -63,10 +64,7 @@ fg_status fg_manifest_format(fg_context *ctx, const fg_manifest *manifest, char 
       fg_csv_put_text(out, row ? fg_manifest_cell(manifest, row - 1, i) : manifest->name[i], NULL);
       fputc(i + 1 < manifest->columns ? ',' : '\n', out);
     }
-  bool broken = ferror(out) != 0;
-  if (fclose(out) == 0 && !broken) return FG_OK;
-  free(*text);
-  *text = NULL;
+  if (fg_stream_keep(out, text)) return FG_OK;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a manifest");
 }
 

@@ -152,9 +152,6 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   FILE *out = open_memstream(json, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a recipe");
   fg_document_json(out, &fg_recipe_members, &text);
-  bool broken = ferror(out) != 0;
-  if (fclose(out) == 0 && !broken) return FG_OK;
-  free(*json);
-  *json = NULL;
+  if (fg_stream_keep(out, json)) return FG_OK;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a recipe");
 }

@@ -70,11 +70,8 @@ static fg_status write_journal_head(fg_context *ctx, FILE *out, const fg_journal
   size_t length;
   FILE *memory = open_memstream(&line, &length);
   if (memory) write_head_members(memory, head);
-  bool broken = !memory || ferror(memory) != 0;
-  if ((memory && fclose(memory) != 0) || broken) {
-    free(line);
+  if (!fg_stream_keep(memory, &line))
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the head of a journal");
-  }
   FG_TRY(fg_seal_line(ctx, &line, &length));
   fwrite(line, 1, length, out);
   free(line);

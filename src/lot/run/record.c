@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "lot/run/record.h"
+#include "core/file.h"
 #include "core/json_read.h"
 
 #include <math.h>
@@ -152,10 +153,7 @@ fg_status fg_record_format(fg_context *ctx, const fg_record *record,
   if (out) print_record(out, &written, measurement);
   free(written.scan_bytes);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
-  bool broken = ferror(out) != 0;
-  if (fclose(out) == 0 && !broken) return fg_seal_line(ctx, line, length);
-  free(*line);
-  *line = NULL;
+  if (fg_stream_keep(out, line)) return fg_seal_line(ctx, line, length);
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
 }
 
@@ -420,9 +418,6 @@ fg_status fg_record_format_names(fg_context *ctx, char **text) {
   fg_record_write_names(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);
-  bool broken = ferror(out) != 0;
-  if (fclose(out) == 0 && !broken) return FG_OK;
-  free(*text);
-  *text = NULL;
+  if (fg_stream_keep(out, text)) return FG_OK;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the names of a record");
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "page/plot_marks.h"
 #include "report/doe/axes.h"
 #include "report/doe/plots.h"
@@ -201,7 +202,7 @@ static void put_outside(const fg_plot *at, const slice *s) {
     for (int k = 0; k < GRID; k++)
       put_outside_cell(at, s, i, k, edge);
   fputs("\"/>\n", at->out);
-  if (edge && fclose(edge) == 0 && text && *text)
+  if (fg_stream_keep(edge, &text) && *text)
     fprintf(at->out, "<path class=\"edge\" d=\"%s\"/>\n", text);
   free(text);
 }

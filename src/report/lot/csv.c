@@ -213,10 +213,11 @@ static fg_status put_pad_labels(fg_context *ctx, FILE *out, const fg_lot_analysi
     if (foil && analysis->lot->records[foil->item].foil_count > 1)
       fprintf(words, "#%d", foil->foil->number);
   }
-  bool broken = fclose(words) != 0;
-  if (!broken) put_csv_text(out, text);
+  if (!fg_stream_keep(words, &text))
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv");
+  put_csv_text(out, text);
   free(text);
-  return broken ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv") : FG_OK;
+  return FG_OK;
 }
 
 fg_status fg_lot_write_bearings_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {

@@ -99,7 +99,7 @@ fg_status fg_lot_page_draw(fg_context *ctx, const fg_design *design, const fg_ma
   FILE *into = open_memstream(page, &size);
   if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a foil's page");
   fg_status status = fg_report_write_html(ctx, &report, into);
-  if (fclose(into) != 0 && status == FG_OK)
+  if (!fg_stream_keep(into, page) && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a foil's page");
   if (status != FG_OK) {
     free(*page);

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "foilgauge/file.h"
 #include "station/access.h"
@@ -85,7 +86,7 @@ static void give_state(fg_hub *hub, const fg_request *request, size_t view, fg_a
   FILE *out = open_memstream(&body, &size);
   if (out) {
     views[view].write(&search, &state, out);
-    fclose(out);
+    fg_stream_keep(out, &body);
   }
   fg_hub_state_free(&state);
   give_body(answer, body ? 200 : 500, views[view].type, body, size);

@@ -152,7 +152,7 @@ fg_status fg_parts_format(fg_context *ctx, fg_part *const *parts, size_t count,
     fg_document_json(out, fg_part_document.members, parts[0]);
   else
     status = write_parts(ctx, parts, count, format, decimal_comma, out);
-  if (fclose(out) != 0 && status == FG_OK)
+  if (!fg_stream_keep(out, body) && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: parts");
   if (status != FG_OK) {
     free(*body);
