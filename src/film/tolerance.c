@@ -3,9 +3,7 @@
  * bearings, and of all bumps alike.
  *
  * A bearing's threshold speed is not solved for. Below it the critical mass is above the rotor's:
- * the first speed at which that is so, from the upper end of the interval downwards, tells its
- * side.
- */
+ * the highest of some speeds at which that is so tells its side. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,12 +15,15 @@ enum { TRIAL_DRAWS = 40, DOUBLINGS = 8, REFINEMENTS = 2 };
 enum { SIDE_STEPS = 4 };
 static const double share_kept = 0.95;
 
+/* Of the interval's ends the upper one tells ABOVE, and the lower one nearly always the rest. */
+static const int side_order[] = {0, SIDE_STEPS, 1, 2, 3};
+
 fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
                             const fg_film_bearing *bearing, fg_film_side *side) {
   *side = FG_FILM_NO_FILM;
-  for (int i = 0; i <= SIDE_STEPS; i++) { /* from the thicker film */
+  for (int i = 0; i <= SIDE_STEPS; i++) {
     fg_film_result at;
-    double share = r->options.within_pct / 100 * (1 - 2. * i / SIDE_STEPS);
+    double share = r->options.within_pct / 100 * (1 - 2. * side_order[i] / SIDE_STEPS);
     double rpm = r->tolerance.threshold_rpm * (1 + share);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, rpm, FG_FILM_ONWARD, &at));
     if (at.outcome != FG_FILM_SOLVED) return FG_OK;
@@ -34,6 +35,13 @@ fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_wo
   return FG_OK;
 }
 
+/* Trials of every bump by itself, which two tolerances ask for. */
+enum { TRIALS_MAX = 2 * (DOUBLINGS + REFINEMENTS + 1) };
+typedef struct tolerance_trials {
+  double um[TRIALS_MAX], within[TRIALS_MAX], not_lower[TRIALS_MAX];
+  size_t count;
+} tolerance_trials;
+
 /* A kind of tolerance that is tried. */
 typedef struct tolerance_trial {
   fg_film_report *report;
@@ -41,6 +49,7 @@ typedef struct tolerance_trial {
   fg_film_workspace *workspace;
   double sign;    /* of all bumps alike; 0: of every bump by itself */
   bool not_lower; /* of that: a higher threshold is kept, too */
+  tolerance_trials *known;
 } tolerance_trial;
 
 static fg_status try_alike(fg_context *ctx, const tolerance_trial *t, double um, bool *kept) {
@@ -53,15 +62,27 @@ static fg_status try_alike(fg_context *ctx, const tolerance_trial *t, double um,
   return FG_OK;
 }
 
-static fg_status try_tolerance(fg_context *ctx, const tolerance_trial *t, double um, bool *kept) {
+static fg_status add_trial(fg_context *ctx, const tolerance_trial *t, double um) {
   fg_film_draws draws;
-  if (t->sign != 0) return try_alike(ctx, t, um, kept);
+  tolerance_trials *known = t->known;
   fg_status status =
       fg_film_draw_spread(ctx, t->report, t->perfect, t->workspace, um * 1e-3, TRIAL_DRAWS, &draws);
-  const fg_film_share *share = t->not_lower ? &draws.not_lower : &draws.within;
-  *kept = status == FG_OK && share->share >= share_kept;
+  known->um[known->count] = um;
+  known->within[known->count] = draws.within.share;
+  known->not_lower[known->count++] = draws.not_lower.share;
   free(draws.result);
   return status;
+}
+
+static fg_status try_tolerance(fg_context *ctx, const tolerance_trial *t, double um, bool *kept) {
+  tolerance_trials *known = t->known;
+  size_t at = 0;
+  if (t->sign != 0) return try_alike(ctx, t, um, kept);
+  while (at < known->count && known->um[at] != um)
+    at++;
+  if (at == known->count) FG_TRY(add_trial(ctx, t, um));
+  *kept = (t->not_lower ? known->not_lower : known->within)[at] >= share_kept;
+  return FG_OK;
 }
 
 /* The widest tolerance up to which all keep it: from a narrow one doubled until one does not (large
@@ -89,11 +110,12 @@ static fg_status find_widest(fg_context *ctx, const tolerance_trial *t, double *
 static fg_status find_tolerances(fg_context *ctx, fg_film_report *r, const fg_film_bearing *perfect,
                                  fg_film_workspace *workspace) {
   fg_film_tolerance *tolerance = &r->tolerance;
+  tolerance_trials known = {.count = 0};
   for (int each = 0; each < 2; each++)
-    FG_TRY(find_widest(ctx, &(tolerance_trial){r, perfect, workspace, 0, each == 1},
+    FG_TRY(find_widest(ctx, &(tolerance_trial){r, perfect, workspace, 0, each == 1, &known},
                        each ? &tolerance->each_not_lower_um : &tolerance->each_um));
   for (int side = 0; side < 2; side++)
-    FG_TRY(find_widest(ctx, &(tolerance_trial){r, perfect, workspace, side ? 1 : -1, false},
+    FG_TRY(find_widest(ctx, &(tolerance_trial){r, perfect, workspace, side ? 1 : -1, false, NULL},
                        &tolerance->alike_um[side]));
   return FG_OK;
 }
