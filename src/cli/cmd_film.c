@@ -75,7 +75,8 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "The bearing:", 2},
     {"foils", OPTION_FOILS, "PATH", 0,
      "A report of `foilgauge measure` whose foils are the pads in their order: their clearances in "
-     "place of the design's. Or the folder of a lot: bearings are drawn from its foils",
+     "place of the design's. Or one of `foilgauge stiffness` of this bearing: its gap and "
+     "stiffness by azimuth. Or the folder of a lot: bearings are drawn from its foils",
      2},
     {"bore", OPTION_BORE, "FILE.csv", 0,
      "The bore's measured profile: columns angle_deg and radius_mm; its radius less the design's "

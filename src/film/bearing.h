@@ -14,6 +14,11 @@ fg_status fg_film_describe(fg_context *ctx, fg_film_report *report, fg_film_bear
 /* Reads the foils of options.foils into the bearing, which is the perfect one on entry. */
 fg_status fg_film_read_foils(fg_context *ctx, fg_film_report *report, fg_film_bearing *bearing);
 
+/* Takes clearances and stiffness of a report of `foilgauge stiffness`, which is parsed. */
+struct cJSON;
+fg_status fg_film_take_tested(fg_context *ctx, fg_film_report *report, const struct cJSON *root,
+                              fg_film_bearing *bearing);
+
 fg_film_mesh fg_film_mesh_of(const fg_film_report *report);
 
 /* The case of a bearing under the options' load at a speed. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measured foils of a bearing: a report of `foilgauge measure`, whose foils are the pads in their
- * order. */
+/* A bearing as measured: a report of `foilgauge measure`, whose foils are the pads in their order,
+ * or one of `foilgauge stiffness`. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -61,9 +61,12 @@ static fg_status take_foils(fg_context *ctx, fg_film_report *r, const cJSON *roo
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
   const cJSON *foils = cJSON_GetObjectItemCaseSensitive(root, "foils");
   size_t pads = r->options.pads ? r->options.pads : 1;
-  if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/measure/1") != 0)
+  const char *name = cJSON_IsString(schema) ? schema->valuestring : "";
+  if (!strcmp(name, "foilgauge/load_test/1")) return fg_film_take_tested(ctx, r, root, bearing);
+  if (strcmp(name, "foilgauge/measure/1") != 0)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: not a report of `foilgauge measure` (foilgauge/measure/1)",
+                   "%s: not a report of `foilgauge measure` (foilgauge/measure/1), nor of "
+                   "`foilgauge stiffness` (foilgauge/load_test/1)",
                    r->options.foils);
   size_t count = (size_t)cJSON_GetArraySize(foils);
   if (count != pads)

@@ -193,6 +193,44 @@ END
 expect 0 "agrees with" "$program" film $fast --speeds 30000:90000:2 --lift-off $own --u-lift-off 50 -o lifted.json --table -
 expect 0 "No clearance within" "$program" film $fast --speeds 30000:90000:2 --lift-off 200000 --table -
 
+# A tested bearing: a round one whose stiffness is that of the design's bumps is the perfect bearing; an oval one has half of its gap as
+# the clearance along both axes.
+tested() { # tested FILE GAP_0_MM GAP_90_MM [ROW]
+  python3 - "$@" <<'END'
+import json, math, sys
+path, *gaps = sys.argv[1:4]
+bump, length, bumps = 18.23884047, 40, 27
+rows = []
+for azimuth, gap in zip((30, 120), map(float, gaps)):
+    travel = 2 * gap
+    reach = math.acos(gap / travel)
+    k = bump * length * bumps / (2 * math.pi) * (reach + math.sin(reach) * math.cos(reach))
+    rows.append({"azimuth_deg": azimuth, "gap_mm": gap, "u_gap_mm": 0.0004, "u_repeat_gap_mm": 0.0001, "travel_mm": travel, "stiffness_n_mm": k})
+rows += [eval(row, {"rows": rows}) for row in sys.argv[4:]]
+report = {"schema": "foilgauge/load_test/1", "options": {"azimuth_zero_deg": 30}, "bearings": [{"name": "A"}], "azimuths": rows}
+json.dump(report, open(path, "w"))
+END
+}
+tested round.json 0.08 0.08 && tested oval_test.json 0.08 0.076
+expect 0 "" "$program" film $fast --speeds 30000:90000:2 --foils round.json -o round.film
+near "a tested round bearing" "$(value round.film "r['bearing']['critical_mass_kg'] / r['perfect']['critical_mass_kg']")" 1 1e-6
+expect 0 "" "$program" film $fast --speeds 30000:90000:2 --foils oval_test.json -o oval.film
+valid film.schema.json oval.film
+checks - oval.film <<'END' || fail "a tested oval bearing"
+import json, sys
+r = json.load(open(sys.argv[1]))
+at = {round(c["angle_deg"], 3): c["clearance_um"] for c in r["field"]}
+assert abs(at[0] - 40) < 1e-6 and abs(at[173.333] - (40 - 2 * 6.6666667 / 90)) < 1e-3, at
+assert abs(at[93.333] - (38 + 2 * 3.3333333 / 90)) < 1e-3, at
+assert r["uncertainty"]["u_eccentricity_ratio"] > 0
+END
+tested bad.json 0.08 0.08 '{**rows[0], "azimuth_deg": 210}'
+expect 65 "axis of azimuth 210 is there twice" "$program" film $fast --foils bad.json
+tested bad.json 0.08 0.08 '{**rows[0], "azimuth_deg": 60, "gap_mm": None}'
+expect 65 "azimuth 60 has no gap" "$program" film $fast --foils bad.json
+sed 's/{"name": "A"}/{"name": "A"}, {"name": "B"}/' round.json >bad.json
+expect 65 "2 bearings; test the one" "$program" film $fast --foils bad.json
+
 # Near lift-off a film may lie before or behind the gap between two pads, and one path meets one of both: no speed of the map between two
 # that have a film is without.
 expect 0 "" "$program" film $fast --speeds 3500:6000:60 --speeds-out gaps.csv -o gaps.json
