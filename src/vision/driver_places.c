@@ -64,7 +64,7 @@ void fg_driven_places_of_bins(const fg_driven_profile *profile, bool masked, dou
   places->grid = 0;
   for (size_t i = 0; i < profile->count; i++)
     places->across[i] = bins[i].across_px;
-  if (!masked) return;
+  if (!masked || !profile->count) return;
   double from = bins[0].across_px, to = bins[profile->count - 1].across_px;
   places->from_px = from - 2 * FG_DRIVEN_STEP_PX;
   places->grid = (size_t)fmin((to - from) / FG_DRIVEN_STEP_PX + 5, FG_DRIVEN_MAX);

@@ -133,11 +133,25 @@ static void test_varied_values_are_found_as_anew(void **state) {
   }
 }
 
+/* Dust may leave a stretch without a single pixel. */
+static void test_a_profile_without_bins_is_not_fitted(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_profile_bin bins[1] = {{1e300, 0, 0}};
+  fg_driven_profile profile = {.bins = bins};
+  fg_driver_fit fit = {.driver = fg_driver_none(ends), .noise = 1};
+  memcpy(profile.values, values, sizeof values);
+  fit.driver.values[FG_DRIVER_AMOUNT] = 0.5;
+  assert_ok(&ctx, fg_driver_fit_profiles(&ctx, &profile, 1, &fit));
+  assert_false(fit.good);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_light_is_the_blurred_step),
       cmocka_unit_test(test_table_is_the_normal_distribution),
       cmocka_unit_test(test_varied_values_are_found_as_anew),
+      cmocka_unit_test(test_a_profile_without_bins_is_not_fitted),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
