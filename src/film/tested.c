@@ -98,6 +98,9 @@ static double bump_stiffness(const fg_film_report *r, const tested_axis *axis) {
 fg_status fg_film_take_tested(fg_context *ctx, fg_film_report *r, const cJSON *root,
                               fg_film_bearing *bearing) {
   tested_bearing tested = {.count = 0};
+  if (r->options.bore)
+    return fg_fail(ctx, FG_ERR_USAGE, "%s: the gap of a test holds the bore already: drop %s",
+                   r->options.foils, r->options.bore);
   FG_TRY(read_axes(ctx, r, root, &tested));
   double zero = number_of(cJSON_GetObjectItemCaseSensitive(root, "options"), "azimuth_zero_deg");
   for (size_t i = 0; i < bearing->count; i++) {

@@ -229,6 +229,7 @@ expect 65 "axis of azimuth 210 is there twice" "$program" film $fast --foils bad
 tested bad.json 0.08 0.08 '{**rows[0], "azimuth_deg": 60, "gap_mm": None}'
 expect 65 "azimuth 60 has no gap" "$program" film $fast --foils bad.json
 sed 's/{"name": "A"}/{"name": "A"}, {"name": "B"}/' round.json >bad.json
+expect 64 "holds the bore already" "$program" film $fast --foils round.json --bore round.csv
 expect 65 "2 bearings; test the one" "$program" film $fast --foils bad.json
 
 # Near lift-off a film may lie before or behind the gap between two pads, and one path meets one of both: no speed of the map between two
