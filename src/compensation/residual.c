@@ -145,7 +145,7 @@ static fg_status make_springback_table(fg_context *ctx, const springback_lots *l
   char *text = NULL;
   size_t size;
   const fg_table *named = &lots->table[0].table;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = fg_stream_open(&text, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the springback of all lots");
   fputs("foil,bump,", out);
   for (size_t i = 0; i < named->columns; i++)

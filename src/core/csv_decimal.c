@@ -55,7 +55,7 @@ fg_status fg_csv_write(fg_context *ctx, bool decimal_comma, fg_csv_writer *write
   char *text = NULL;
   size_t size = 0;
   if (!decimal_comma) return write(ctx, user, out);
-  FILE *memory = open_memstream(&text, &size);
+  FILE *memory = fg_stream_open(&text, &size);
   if (!memory) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   fg_status status = write(ctx, user, memory);
   if (!fg_stream_keep(memory, &text) && status == FG_OK)

@@ -307,15 +307,6 @@ fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what) {
                  errno ? strerror(errno) : "a write failed");
 }
 
-bool fg_stream_keep(FILE *out, char **text) {
-  bool whole = out && !ferror(out);
-  if (out) whole = fclose(out) == 0 && whole;
-  if (whole && *text) return true;
-  free(*text);
-  *text = NULL;
-  return false;
-}
-
 void fg_file_find_beside(const char *path, const char *name, char *file, size_t size) {
   const char *slash = strrchr(path, '/');
   bool beside = slash && name[0] != '/';

@@ -9,9 +9,13 @@
  * in words. */
 fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what);
 
-/* Ends a stream of open_memstream, or NULL where that failed. Returns true when `*text` is whole;
- * else memory ran out, and it is freed and NULL. glibc says so by ferror alone, or where the last
- * step fails by no text beside a success. */
+/* Opens a stream into memory; NULL: memory ran out. A write that finds no memory is an error of the
+ * stream; glibc's own stream in memory drops such bytes and tells nobody. `*text` and `*size` are
+ * set at its end. */
+FILE *fg_stream_open(char **text, size_t *size);
+
+/* Ends such a stream, or NULL. Returns true when `*text` is whole, with a '\0' after it; else
+ * memory ran out, and it is NULL. The caller frees it. */
 bool fg_stream_keep(FILE *out, char **text);
 
 /* Resolves `name` against the folder of the file `path`. */

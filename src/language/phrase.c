@@ -124,7 +124,7 @@ static void write_place_of(const matching *m, const place *at, FILE *out) {
 static char *fill_target(const matching *m, const char *target) {
   char *text = NULL;
   size_t size;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = fg_stream_open(&text, &size);
   if (!out) return NULL;
   while (*target) {
     size_t length = *target == '{' ? fg_place_length(target) : 0;
@@ -191,7 +191,7 @@ static bool are_symbols(const fg_language *language, const char *text) {
 static char *translate_numbers(const fg_language *language, const char *text) {
   char *written = NULL;
   size_t size;
-  FILE *out = open_memstream(&written, &size);
+  FILE *out = fg_stream_open(&written, &size);
   if (!out) return NULL;
   fg_numbers_write(language, text, strlen(text), out);
   fg_stream_keep(out, &written);

@@ -126,7 +126,7 @@ static fg_status sum_asked_design(fg_context *ctx, fg_index_lot *lot) {
   strcpy(bare.name, "-");
   bare.tolerance_count = 0;
   bare.calibration = (fg_calibration){.stated = false};
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = fg_stream_open(&text, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);

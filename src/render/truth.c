@@ -433,7 +433,7 @@ static void write_truth(const fg_render_spec *spec, FILE *out) {
 fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json) {
   size_t length;
   *json = NULL;
-  FILE *out = open_memstream(json, &length);
+  FILE *out = fg_stream_open(json, &length);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the truth");
   write_truth(spec, out);
   if (fg_stream_keep(out, json)) return FG_OK;

@@ -37,7 +37,7 @@ static fg_status sum_design(fg_context *ctx, const fg_design *design, char sum[6
   fg_json json;
   fg_design bare = *design;
   bare.calibration = (fg_calibration){.stated = false};
-  FILE *memory = open_memstream(&text, &size);
+  FILE *memory = fg_stream_open(&text, &size);
   if (!memory) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
   fg_json_begin(&json, memory);
   fg_json_object(&json, NULL);

@@ -17,7 +17,7 @@ enum { ROLES = sizeof role_words / sizeof *role_words, LINE_BYTES = 512 };
 void fg_access_refuse(fg_answer *answer, int code, const char *words) {
   free(answer->body);
   *answer = (fg_answer){.code = code, .type = "text/html; charset=utf-8"};
-  FILE *out = open_memstream(&answer->body, &answer->size);
+  FILE *out = fg_stream_open(&answer->body, &answer->size);
   if (!out) return;
   fputs("<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
         "content=\"width=device-width,initial-scale=1\"><title>foilgauge</title>"

@@ -83,7 +83,7 @@ static int code_of(fg_status status) {
 static void write_route_page(fg_inspection *station, const fg_request *request, const route *page,
                              fg_answer *answer) {
   fg_context ctx = {.message = ""};
-  FILE *out = open_memstream(&answer->body, &answer->size);
+  FILE *out = fg_stream_open(&answer->body, &answer->size);
   if (!out) {
     fg_access_refuse(answer, 500, "out of memory");
     return;
@@ -125,7 +125,7 @@ static void answer_events(fg_inspection *station, const fg_request *request, fg_
   long long news = fg_station_news(station);
   *answer = (fg_answer){.code = 200, .type = "text/event-stream"};
   answer->wait = news == request->last_event;
-  FILE *out = open_memstream(&answer->body, &answer->size);
+  FILE *out = fg_stream_open(&answer->body, &answer->size);
   if (!out) return;
   fprintf(out, "retry: 250\nid: %lld\ndata: %s\n\n", news,
           answer->wait || request->last_event < 0 ? "same" : "new");
@@ -136,7 +136,7 @@ static void answer_events(fg_inspection *station, const fg_request *request, fg_
  * that count. */
 static void answer_heartbeat(fg_inspection *station, fg_answer *answer) {
   *answer = (fg_answer){.code = 200, .type = "text/plain; charset=utf-8"};
-  FILE *out = open_memstream(&answer->body, &answer->size);
+  FILE *out = fg_stream_open(&answer->body, &answer->size);
   if (!out) return;
   fprintf(out, "%lld ", fg_station_news(station));
   fg_page_time(out, fg_station_now());
@@ -196,7 +196,7 @@ void fg_station_give_language(const fg_language *language, fg_answer *answer) {
       answer->in_language || (answer->type && !strcmp(answer->type, HTML) && !answer->download[0]);
   bool table = answer->type && !strncmp(answer->type, "text/csv", 8) &&
                fg_language_decimal(language) == ',' && !begins_with(answer, "\xef\xbb\xbf");
-  FILE *out = (page || table) && answer->body ? open_memstream(&text, &size) : NULL;
+  FILE *out = (page || table) && answer->body ? fg_stream_open(&text, &size) : NULL;
   if (!out) return;
   fg_status status = page ? write_page_in(language, answer, out)
                           : fg_csv_write(&ctx, true, copy_body, answer, out);

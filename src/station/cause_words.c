@@ -306,7 +306,7 @@ void fg_cause_write_text(FILE *out, const fg_cause *cause, const fg_quantity *ro
 void fg_cause_write(FILE *out, const fg_cause *cause, const fg_quantity *row, double mean) {
   char *text = NULL;
   size_t size;
-  FILE *words = open_memstream(&text, &size);
+  FILE *words = fg_stream_open(&text, &size);
   if (!words) return;
   fg_cause_write_text(words, cause, row, mean);
   fg_html_text(out, fg_stream_keep(words, &text) ? text : "");

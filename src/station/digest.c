@@ -134,7 +134,7 @@ static void write_labelled(digest *d, const char *label, const char *words) {
 static char *format_cause(const fg_cause *cause, const fg_quantity *row, double mean) {
   char *text = NULL;
   size_t size;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = fg_stream_open(&text, &size);
   if (!out) return NULL;
   fg_cause_write_text(out, cause, row, mean);
   fg_stream_keep(out, &text);

@@ -199,7 +199,7 @@ static char *whole; /* the style that pages link to */
 
 static void join_styles(void) {
   size_t size;
-  FILE *out = open_memstream(&whole, &size);
+  FILE *out = fg_stream_open(&whole, &size);
   if (!out) return;
   fputs(fg_page_style, out);
   fputs(fg_station_style, out);

@@ -51,7 +51,7 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
   fg_status status = fg_lot_settings_format(ctx, settings, false, &recipe);
   if (status == FG_OK && settings->model[0])
     status = fg_file_read_text(ctx, settings->model, FG_LOT_MODEL_BYTES_MAX, &model);
-  FILE *out = status == FG_OK ? open_memstream(&whole, &size) : NULL;
+  FILE *out = status == FG_OK ? fg_stream_open(&whole, &size) : NULL;
   if (out) {
     fprintf(out, "%s\n%s\n%s", FOILGAUGE_VERSION, recipe, model ? model : "");
     if (!fg_stream_keep(out, &whole))

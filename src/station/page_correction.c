@@ -137,7 +137,7 @@ static fg_status write_conflict_page(fg_context *ctx, fg_inspection *station,
 fg_status fg_page_identity(fg_context *ctx, fg_inspection *station, const fg_identity_change *asked,
                            fg_answer *answer) {
   enum { CONFLICT = 409 };
-  FILE *out = open_memstream(&answer->body, &answer->size);
+  FILE *out = fg_stream_open(&answer->body, &answer->size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
   pthread_mutex_lock(&station->database.reading);
   fg_status status = write_conflict_page(ctx, station, asked, out);

@@ -135,7 +135,7 @@ static fg_status try_again(fg_context *ctx, const char *folder, const fg_stored_
                            measured_writer *write, FILE *out, char why[WHY_BYTES]) {
   char *page = NULL;
   size_t size = 0;
-  FILE *into = open_memstream(&page, &size);
+  FILE *into = fg_stream_open(&page, &size);
   if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
   fg_status status = measure_again(ctx, folder, stored, write, into);
   if (!fg_stream_keep(into, &page) && status == FG_OK)

@@ -13,7 +13,7 @@ enum { PICTURES_KEPT = 40 };
 static fg_status draw_picture(fg_context *ctx, const fg_measurement *measurement,
                               const fg_foil *foil, char **html) {
   size_t size;
-  FILE *out = open_memstream(html, &size);
+  FILE *out = fg_stream_open(html, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
   fg_status status = fg_html_picture(ctx, out, measurement, foil, 0);
   if (!fg_stream_keep(out, html) && status == FG_OK)

@@ -102,8 +102,8 @@ typedef struct written_digest {
 
 static fg_status write_digest(fg_context *ctx, const fg_station_request *request,
                               written_digest *digest) {
-  FILE *text = open_memstream(&digest->text, &digest->text_size);
-  FILE *page = open_memstream(&digest->page, &digest->page_size);
+  FILE *text = fg_stream_open(&digest->text, &digest->text_size);
+  FILE *page = fg_stream_open(&digest->page, &digest->page_size);
   fg_status status = text && page ? fg_station_digest(ctx, request, text, page)
                                   : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest");
   bool broken = !fg_stream_keep(text, &digest->text) | !fg_stream_keep(page, &digest->page);

@@ -95,7 +95,7 @@ void fg_why_end(fg_inspection *station) {
 static void go_to_choice(const char *page, const fg_trend_choice *choice, fg_answer *answer) {
   char *text = NULL;
   size_t size;
-  FILE *out = open_memstream(&text, &size);
+  FILE *out = fg_stream_open(&text, &size);
   if (!out) return;
   fg_trend_write_query(out, page, choice);
   const char *location = fg_stream_keep(out, &text) ? text : "/trends";

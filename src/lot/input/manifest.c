@@ -57,7 +57,7 @@ fg_status fg_manifest_add_scan(fg_context *ctx, fg_manifest *manifest, const cha
 fg_status fg_manifest_format(fg_context *ctx, const fg_manifest *manifest, char **text) {
   size_t size;
   *text = NULL;
-  FILE *out = open_memstream(text, &size);
+  FILE *out = fg_stream_open(text, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a manifest");
   for (size_t row = 0; row <= manifest->items; row++)
     for (size_t i = 0; i < manifest->columns; i++) {

@@ -149,7 +149,7 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   size_t size;
   const fg_recipe_text text = {.settings = *settings, .with_jobs = with_jobs};
   *json = NULL;
-  FILE *out = open_memstream(json, &size);
+  FILE *out = fg_stream_open(json, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a recipe");
   fg_document_json(out, &fg_recipe_members, &text);
   if (fg_stream_keep(out, json)) return FG_OK;

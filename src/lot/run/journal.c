@@ -68,7 +68,7 @@ static void write_head_members(FILE *out, const fg_journal_head *head) {
 static fg_status write_journal_head(fg_context *ctx, FILE *out, const fg_journal_head *head) {
   char *line = NULL;
   size_t length;
-  FILE *memory = open_memstream(&line, &length);
+  FILE *memory = fg_stream_open(&line, &length);
   if (memory) write_head_members(memory, head);
   if (!fg_stream_keep(memory, &line))
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the head of a journal");

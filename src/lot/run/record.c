@@ -149,7 +149,7 @@ fg_status fg_record_format(fg_context *ctx, const fg_record *record,
   *line = NULL;
   if (measurement) written.record.error = NULL;
   FG_TRY(format_bytes(ctx, record->scan, &written.scan_bytes));
-  FILE *out = open_memstream(line, length);
+  FILE *out = fg_stream_open(line, length);
   if (out) print_record(out, &written, measurement);
   free(written.scan_bytes);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
@@ -410,7 +410,7 @@ fg_status fg_record_format_names(fg_context *ctx, char **text) {
   size_t size;
   fg_json json;
   *text = NULL;
-  FILE *out = open_memstream(text, &size);
+  FILE *out = fg_stream_open(text, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the names of a record");
   fg_json_begin(&json, out);
   fg_json_line(&json);

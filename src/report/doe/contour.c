@@ -196,7 +196,7 @@ static void put_outside_cell(const fg_plot *at, const slice *s, int i, int k, FI
 static void put_outside(const fg_plot *at, const slice *s) {
   char *text = NULL;
   size_t size;
-  FILE *edge = open_memstream(&text, &size);
+  FILE *edge = fg_stream_open(&text, &size);
   fputs("<path class=\"outside\" d=\"M0 0", at->out);
   for (int i = 0; i < GRID; i++)
     for (int k = 0; k < GRID; k++)

@@ -204,7 +204,7 @@ static fg_status put_pad_labels(fg_context *ctx, FILE *out, const fg_lot_analysi
                                 const fg_lot_bearing *bearing) {
   char *text = NULL;
   size_t size;
-  FILE *words = open_memstream(&text, &size);
+  FILE *words = fg_stream_open(&text, &size);
   if (!words) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv");
   for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
     const fg_lot_foil *foil = bearing->pad[pad];

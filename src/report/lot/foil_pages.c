@@ -96,7 +96,7 @@ fg_status fg_lot_page_draw(fg_context *ctx, const fg_design *design, const fg_ma
                             .scan_count = 1,
                             .back = "../index.html"};
   size_t size;
-  FILE *into = open_memstream(page, &size);
+  FILE *into = fg_stream_open(page, &size);
   if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a foil's page");
   fg_status status = fg_report_write_html(ctx, &report, into);
   if (!fg_stream_keep(into, page) && status == FG_OK)

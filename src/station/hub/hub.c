@@ -83,7 +83,7 @@ static void give_state(fg_hub *hub, const fg_request *request, size_t view, fg_a
     give_words(answer, 503, ctx.message);
     return;
   }
-  FILE *out = open_memstream(&body, &size);
+  FILE *out = fg_stream_open(&body, &size);
   if (out) {
     views[view].write(&search, &state, out);
     fg_stream_keep(out, &body);

@@ -146,7 +146,7 @@ fg_status fg_parts_format(fg_context *ctx, fg_part *const *parts, size_t count,
                           fg_part_format format, bool decimal_comma, char **body, size_t *size) {
   fg_status status = FG_OK;
   *body = NULL;
-  FILE *out = open_memstream(body, size);
+  FILE *out = fg_stream_open(body, size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: parts");
   if (format == FG_PART_JSON)
     fg_document_json(out, fg_part_document.members, parts[0]);
