@@ -36,9 +36,13 @@ WORDS = """
 `/usr/bin/python3 tests/bench/film_lots.py build/foilgauge > reports/thesis/rotor_lots.md` writes this page: foils with known radii and angles are
 rendered at 1200 dpi, `foilgauge measure` measures them, three of them make a bearing, and `foilgauge film` solves it from the
 measured clearances and once more from the true ones. What differs is the error that measuring adds to the rotor's numbers, and it is held against the u that the
-program states. Classical and sinusoidal lots are those of sections 5.8 and 5.10 (six foils of each), the clearance that of each bump as fitted into the sleeve. A cantilever
+program states. Classical and sinusoidal foils are those of tests/bench/thesis_lot.py and thesis_lots.py (six of each), the clearance that of each bump as fitted into the sleeve. A cantilever
 foil has no bumps: the change of its beams' sagitta shifts the clearance of table 5.6 (80 um) at eight places a pad. 5 N, 60 000 rpm, compliance 0.67,
 mesh 2,4; bearings are drawn from the six foils with seed 1. Foils with a bump that was not measured are left out. "Micrometer": the strip's thickness was measured apart (0.1 mm, u 0.5 um).
+
+The clearance of bumps is measured far better than its u says without a micrometer: this u is that of the strip's thickness, which a scan alone does not know (the driver's
+tone). With a micrometer it hardly adds to the film. Of cantilevers the stated u is too small at this resolution: **fewer than 95 % of the beams lie within 2u**, and
+with them the films. The critical mass of a few grams hangs on what is not round, and is uncertain by tens of percent where the rest is known to one.
 """
 
 
