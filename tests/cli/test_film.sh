@@ -234,13 +234,16 @@ expect 65 "2 bearings; test the one" "$program" film $fast --foils bad.json
 
 # Near lift-off a film may lie before or behind the gap between two pads, and one path meets one of both: no speed of the map between two
 # that have a film is without.
-expect 0 "" "$program" film $fast --speeds 3500:6000:60 --speeds-out gaps.csv -o gaps.json
-checks - gaps.csv <<'END' || fail "gaps of the map"
+no_gaps() {
+  expect 0 "" "$program" film $fast --speeds 3500:6000:60 --speeds-out gaps.csv -o gaps.json
+  checks - gaps.csv <<'END' || fail "gaps of the map"
 import csv, sys
 outcomes = [row["outcome"] for row in csv.DictReader(open(sys.argv[1]))]
 first = next(i for i, o in enumerate(outcomes) if o != "unsolved")
 assert 5 < first < 30 and "unsolved" not in outcomes[first:], outcomes
 END
+}
+brief || no_gaps
 expect 64 "is of --lift-off" "$program" film $fast --u-lift-off 7
 expect 64 "lift-off: '0' is not a number" "$program" film $fast --lift-off 0
 [ "$(value oval.json "20 < r['load_capacity_n'] and r['lift_off_rpm'] < 60000")" = True ] || fail "limits of the load and the speed"
@@ -276,26 +279,29 @@ assert low < shared["bearing"]["critical_mass_kg"] < high
 END
 
 # A tolerance on the clearance by the threshold speed: all bumps alike keep it within, and three tenths more do not.
-rotor="--load 20 --speed 30000 --clearance 32 --compliance 0.67 --mass 0.3 --speeds 8000:40000:12 --mesh 2,4"
-expect 0 "threshold speed \([0-9]* rpm as designed\) stays" "$program" film $rotor --within 10 --shims=-1:1 --draws 10 -o within.json --table -
-valid film.schema.json within.json
-for side in closer wider; do
-  for share in 1 1.3; do
-    sign=$([ $side = closer ] && echo - || echo +)
-    uniform "$(value within.json "(32 $sign $share * r['tolerance']['alike_${side}_um']) / 1000")" 0 0 >moved.json
-    expect 0 "" "$program" film $rotor --foils moved.json -o moved.film
-    kept=$(value moved.film "abs(r['threshold_rpm'] / $(value within.json "r['tolerance']['threshold_rpm']") - 1) <= 0.1")
-    [ $kept = $([ $share = 1 ] && echo True || echo False) ] || fail "the threshold of bumps that are $side by $share of the tolerance: $kept"
+tolerances() {
+  rotor="--load 20 --speed 30000 --clearance 32 --compliance 0.67 --mass 0.3 --speeds 8000:40000:12 --mesh 2,4"
+  expect 0 "threshold speed \([0-9]* rpm as designed\) stays" "$program" film $rotor --within 10 --shims=-1:1 --draws 10 -o within.json --table -
+  valid film.schema.json within.json
+  for side in closer wider; do
+    for share in 1 1.3; do
+      sign=$([ $side = closer ] && echo - || echo +)
+      uniform "$(value within.json "(32 $sign $share * r['tolerance']['alike_${side}_um']) / 1000")" 0 0 >moved.json
+      expect 0 "" "$program" film $rotor --foils moved.json -o moved.film
+      kept=$(value moved.film "abs(r['threshold_rpm'] / $(value within.json "r['tolerance']['threshold_rpm']") - 1) <= 0.1")
+      [ $kept = $([ $share = 1 ] && echo True || echo False) ] || fail "the threshold of bumps that are $side by $share of the tolerance: $kept"
+    done
   done
-done
-checks - within.json <<'END' || fail "tolerances"
+  checks - within.json <<'END' || fail "tolerances"
 import json, sys
 r = json.load(open(sys.argv[1]))
 t, d = r["tolerance"], r["draws"]
 assert 0 < t["each_um"] <= t["each_not_lower_um"] < t["alike_closer_um"], t
 assert d["within"]["count"] <= d["not_lower"]["count"] <= 10, d
 END
-expect 0 "No tolerance on the clearance is told" "$program" film $rotor --speeds 30000:40000:2 --within 10 --table -
+  expect 0 "No tolerance on the clearance is told" "$program" film $rotor --speeds 30000:40000:2 --within 10 --table -
+}
+brief || tolerances
 
 # Bad input.
 while IFS='|' read -r code words options; do
