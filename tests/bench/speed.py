@@ -14,6 +14,7 @@ import sys
 import tempfile
 
 import benchlib
+import speed_scans
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOOLS = os.path.join(benchlib.ROOT, "build", "bench")
@@ -147,6 +148,8 @@ def write_markdown(path, results, repetitions, command):
         out.write(
             "# Speed, memory and accuracy in one run\n\n"
             f"Made by `{command}` with {benchlib.program_version()} on {benchlib.machine()}.\n"
+            "Scans that were not given are those of the shared data folder or, where it is not there, renders like them\n"
+            "(`tests/bench/speed_scans.py`, which says what they show).\n"
             f"Every scan is measured {repetitions} times by each in turn ({PEER_REPETITIONS} times by the peers), in\n"
             "alternating order, after one round that warms the page cache. Each run is a process of its own, start-up included;\n"
             "foilgauge writes its JSON report, reading alone keeps nothing. Ratios are formed pair by\n"
@@ -189,7 +192,7 @@ def write_csv(path, results):
 def default_scans():
     folder = os.path.join(benchlib.shared_folder(), "scans")
     if not os.path.isdir(folder):
-        folder = os.path.join(benchlib.ROOT, "samples")
+        return speed_scans.render_all(benchlib.FOILGAUGE, os.path.join(benchlib.ROOT, "build", "speed_scans"))
     scans = sorted(glob.glob(os.path.join(folder, "*.png")))
     return [scan for scan in scans if os.path.exists(scan[: -len(".png")] + ".truth.json")]
 
