@@ -171,8 +171,8 @@ static const fg_evidence_option *find_option(const fg_evidence_search *s,
   return NULL;
 }
 
-/* On a plate the set that was proposed is a model, too, with its shapes: they were fitted together.
- */
+/* The set that another search proposes is a model, too, with its shapes: they were fitted together.
+ * Effects added one by one do not reach all sets: what stands for two of them leads each alone. */
 static fg_status propose_seed(fg_context *ctx, fg_evidence_search *s) {
   fg_evidence_model model = s->models[0];
   for (size_t e = 0; e < s->seed->count; e++) {
@@ -277,7 +277,7 @@ fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   FG_TRY(find_scatter(ctx, s, &none));
   s->models[s->count++] = none;
   FG_TRY(run_rounds(ctx, s));
-  if (s->problem.edge_fit->discs) FG_TRY(propose_seed(ctx, s));
+  FG_TRY(propose_seed(ctx, s));
   qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   FG_TRY(shorten_models(ctx, s));
   for (size_t m = 0; m < s->count && m < SCATTERED; m++) {

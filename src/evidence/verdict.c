@@ -106,14 +106,26 @@ static double probability_of_none(const fg_evidence_search *s) {
   return none / sum;
 }
 
-/* Lists the models from `floor` on that include no other one of them. */
-static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, double floor,
+/* Models that a tie is chosen from. */
+typedef struct tie_range {
+  double floor;                      /* score */
+  const fg_evidence_model *nameless; /* those without a name alone, no larger than this one; NULL:
+                                        all */
+} tie_range;
+
+static bool is_in_range(const fg_evidence_model *model, const tie_range *range) {
+  if (!model->parts) return false; /* it was refuted */
+  return !range->nameless || (!model->named && model->parts <= range->nameless->parts);
+}
+
+/* Lists the models of a range that include no other one of them. */
+static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_range *range,
                            fg_evidence_verdict *v) {
   for (size_t m = 0; m < s->count && v->ties < FG_EVIDENCE_TIES; m++) {
     const fg_evidence_model *model = &s->models[m];
     bool bears = true, more = false;
-    if (model->score < floor) break; /* sorted */
-    if (!model->parts) continue;     /* it was refuted */
+    if (model->score < range->floor) break; /* sorted */
+    if (!is_in_range(model, range)) continue;
     for (size_t k = 0; k < v->ties && !more; k++)
       more = fg_evidence_includes(model, &v->tie[k]);
     if (more) continue;
@@ -189,14 +201,36 @@ static const fg_evidence_model *find_unnamed(const fg_evidence_search *s) {
   return NULL;
 }
 
+/* Returns the model of the fewest causes, none of them named, within the margin of the best one;
+ * NULL: there is none. */
+static const fg_evidence_model *find_nameless(const fg_evidence_search *s, double margin) {
+  const fg_evidence_model *best = NULL;
+  for (size_t m = 0; m < s->count && s->models[m].score >= s->models[0].score - margin; m++) {
+    const fg_evidence_model *model = &s->models[m];
+    if (model->parts && !model->named && (!best || model->parts < best->parts)) best = model;
+  }
+  return best;
+}
+
+/* Names beside what has none are no evidence where that explains as well alone, up to errors of the
+ * columns: they are pieces of it. */
+static tie_range choose_range(const fg_evidence_search *s, double named, double margin) {
+  if (isfinite(named)) return (tie_range){.floor = named - FG_EVIDENCE_LEAD};
+  const fg_evidence_model *nameless = find_nameless(s, margin);
+  double score = nameless ? nameless->score : s->models[0].score;
+  return (tie_range){score - FG_EVIDENCE_LEAD, nameless};
+}
+
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
  * share of the evidence. What leads it by less is no rival; what follows it closely is. */
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence_verdict *v) {
   *v = (fg_evidence_verdict){.outcome = FG_EVIDENCE_CLEAN, .p_null = probability_of_none(s)};
   double top = s->models[0].score, named;
   if (v->p_null > CLEAN_P || !s->models[0].parts) return FG_OK;
-  FG_TRY(find_best_named(ctx, s, fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top), &named));
-  FG_TRY(list_ties(ctx, s, isfinite(named) ? named - FG_EVIDENCE_LEAD : top - FG_EVIDENCE_LEAD, v));
+  double margin = fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top);
+  FG_TRY(find_best_named(ctx, s, margin, &named));
+  const tie_range range = choose_range(s, named, margin);
+  FG_TRY(list_ties(ctx, s, &range, v));
   if (!v->ties) take_likeliest_rivals(s, v);
   const fg_evidence_model *unnamed = find_unnamed(s);
   if (isfinite(named) && v->ties == 1 && count_pieces(&v->tie[0]) >= PIECES && unnamed)

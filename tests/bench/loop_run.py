@@ -219,6 +219,8 @@ def judge_names(report, wanted):
     explanations that the report says it cannot tell apart. Curves count as `unattributed`."""
     if "scan.carriage_quadratic" in wanted:  # about another middle it is the scale
         wanted = [w for w in wanted if w != "scan.scale_y"]
+    if "scan.optical_cubic" in wanted:  # about another middle it is the quadratic
+        wanted = [w for w in wanted if w != "scan.optical_quadratic"]
     claims = [c["id"] for c in report["claims"]]
     curve = report["unattributed"]
     said = sorted(claims + (["free." + curve["coordinate"]] if curve else []))

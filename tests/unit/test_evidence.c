@@ -117,6 +117,81 @@ static void one_cause_is_not_cut_into_named_pieces(void **state) {
   }
 }
 
+/* A model of a search that is written by hand: rivals by their place in the table. */
+static void put_model(fg_evidence_search *s, fg_evidence_part *part, double score,
+                      const char *names) {
+  fg_evidence_model *model = &s->models[s->count++];
+  char list[200];
+  *model = (fg_evidence_model){.score = score};
+  snprintf(list, sizeof list, "%s", names);
+  for (char *at = list, *name; (name = strtok(at, " ")) != NULL; at = NULL) {
+    fg_evidence_part *one = &part[s->stored++];
+    one->effect = fg_effect_find(name);
+    for (const fg_rival *rival = fg_rivals; !one->effect && rival->name; rival++)
+      if (!strcmp(rival->name, name)) one->rival = rival;
+    assert_true(one->effect || one->rival);
+    model->part[model->parts++] = one;
+    model->named += one->effect != NULL;
+  }
+}
+
+enum { WRITTEN = 4 };
+
+/* The verdict on models of these scores, best first; the last of them is no cause. */
+static void decide_written(const double score[WRITTEN], const char *const names[WRITTEN],
+                           fg_evidence_verdict *v) {
+  fg_context ctx = {0};
+  foil_rows f;
+  fg_evidence_search s;
+  static fg_evidence_part part[24];
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, NOISE_UM);
+  const fg_effect_set none = {.count = 0};
+  const fg_evidence_prior prior = {1, 1};
+  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f.edge_fit, &none, f.residual_um, f.jacobian,
+                                          &prior, &s));
+  memset(part, 0, sizeof part);
+  for (int m = 0; m < WRITTEN; m++)
+    put_model(&s, part, score[m], names[m]);
+  assert_ok(&ctx, fg_evidence_decide(&ctx, &s, v));
+  fg_evidence_search_close(&s);
+  foil_rows_close(&f);
+}
+
+static void a_name_beside_what_has_none_must_gain_more_than_the_columns_err(void **state) {
+  (void)state;
+  fg_evidence_verdict v;
+  static const char *const names[] = {"scan.x.dx scan.row_step", "scan.x.dx scan.y.dy", "scan.x.dx",
+                                      ""};
+  decide_written((double[]){1e5, 1e5 - 4, 1e5 - 20, 0}, names, &v);
+  assert_int_equal(v.outcome, FG_EVIDENCE_UNATTRIBUTED);
+  assert_true(v.ties == 1 && v.tie[0].parts == 1 && !v.tie[0].named);
+  decide_written((double[]){1e5, 1e5 - 40, 1e5 - 50, 0}, names, &v);
+  assert_true(v.ties == 1 && v.tie[0].named == 1);
+}
+
+/* Each named cause is a chance of 3 %: of three, what has no name is as likely. A scale is none,
+ * and lost rows are one. */
+static void three_named_causes_at_once_are_tied(void **state) {
+  (void)state;
+  static const struct {
+    const char *causes;
+    fg_evidence_outcome outcome;
+  } sets[] = {
+      {"scan.row_step scan.carriage_ripple scan.yaw", FG_EVIDENCE_TIED},
+      {"scan.row_step scan.carriage_ripple", FG_EVIDENCE_FOUND},
+      {"scan.row_step scan.column_step scan.carriage_ripple", FG_EVIDENCE_FOUND},
+      {"scan.shear scan.row_step scan.carriage_ripple", FG_EVIDENCE_FOUND},
+  };
+  for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
+    fg_evidence_verdict v;
+    const char *const names[] = {sets[k].causes, "scan.xy", "scan.y.dy", ""};
+    decide_written((double[]){1e3, 900, 800, 0}, names, &v);
+    if (v.outcome != sets[k].outcome || v.ties != (v.outcome == FG_EVIDENCE_TIED ? 2 : 1))
+      fail_msg("%s: outcome %d, %zu ties", sets[k].causes, (int)v.outcome, v.ties);
+  }
+}
+
 /* Standard uncertainty of R0, um, that is left by what the scanner may do unseen. */
 static double unseen_um(foil_rows *f) {
   fg_context ctx = {0};
@@ -152,6 +227,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
       cmocka_unit_test(one_cause_is_not_cut_into_named_pieces),
+      cmocka_unit_test(a_name_beside_what_has_none_must_gain_more_than_the_columns_err),
+      cmocka_unit_test(three_named_causes_at_once_are_tied),
       cmocka_unit_test(what_edges_do_not_show_is_bounded_by_them),
       cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
   };
