@@ -19,17 +19,20 @@ def is_curve(row):
 
 
 def right_place(row):
-    """A curve over the coordinate that it lives on, or over one that is told to do as well; seams also by their row."""
+    """A curve over the coordinate that it lives on, or over one that is told to do as well, or told itself as one of the
+    explanations of a tie; seams also by their row."""
     if "scan.column_step" in row["wanted"]:
         said = set(filter(None, row["claims"].split(" + ")))
         return said == {"scan.column_step"} or (not said and row["unattributed"].startswith("scan.x"))
-    return bool(number(row, "right_coordinate"))
+    return bool(number(row, "right_coordinate") or number(row, "in_class"))
 
 
 def own_row(row):
-    """An effect that no single row explains is unattributed, or has its own row (seams)."""
+    """An effect that no single row explains is unattributed, or has its own row (seams), or is told as one of the
+    explanations of a tie."""
     said = set(filter(None, row["claims"].split(" + ")))
-    return bool(row["unattributed"]) and not said or ("scan.column_step" in row["wanted"] and said == {"scan.column_step"})
+    as_curve = "free." in row["wanted"] and bool(number(row, "in_class"))
+    return as_curve or bool(row["unattributed"]) and not said or ("scan.column_step" in row["wanted"] and said == {"scan.column_step"})
 
 
 def is_right(row):

@@ -204,7 +204,7 @@ In class: what is there was named, or is one of the explanations that the report
 is claimed, and what is there is not among the explanations. Told: exactly named, and nothing is tied with it. Floor: the same foils
 and scatter without the effect, measured. Errors of R, h and R0 are against the measurand: least-squares circles through the part as it
 is. Worse: an error is larger after than before, by more than 2 % and a tenth of the tier's median floor;
-beyond its noise: and larger than 1.2 times its floor. The midline: circles and what is said to deviate from them. Right place of curves: `unattributed` over the right coordinate, or over one that it is told to be as good as; seams also as their row.
+beyond its noise: and larger than 1.2 times its floor. The midline: circles and what is said to deviate from them. Right place of curves: `unattributed` over the right coordinate, or over one that it is told to be as good as,\nor the curve told as one of the explanations of a tie; seams also as their row.
 Seconds are {seconds}."""
 
 QUIET = "the clock's, or the processor's where those are less: other inputs are rendered and judged beside"

@@ -214,9 +214,16 @@ def form_errors(pairs):
     return count
 
 
-def judge_names(report, wanted):
+def as_told(effects):
+    """The names by which a class tells effects: a curve of the glass with the axis that it moves, "free.scan.y.dx"."""
+    moved = lambda e: f".d{e['moves']}" if e["id"].startswith("free.scan.") and "moves" in e else ""
+    return frozenset(e["id"] + moved(e) for e in effects)
+
+
+def judge_names(report, wanted, told):
     """named: the claims are the true effects, and no others. in_class: the true effects together are one of the
-    explanations that the report says it cannot tell apart. Curves count as `unattributed`."""
+    explanations that the report says it cannot tell apart, by their names or as they are told. Curves count as
+    `unattributed`."""
     if "scan.carriage_quadratic" in wanted:  # about another middle it is the scale
         wanted = [w for w in wanted if w != "scan.scale_y"]
     if "scan.optical_cubic" in wanted:  # about another middle it is the quadratic
@@ -236,7 +243,7 @@ def judge_names(report, wanted):
         "unattributed": curve["coordinate"] + ":" + str(curve.get("moves")) if curve else "",
         "tied": int(any(c["verdict"] == "tied" for c in report["claims"])),
         "named": int(named),
-        "in_class": int(named or frozenset(wanted) in classes),
+        "in_class": int(named or frozenset(wanted) in classes or told in classes),
         "right_coordinate": int(right),
     }
 
@@ -250,7 +257,7 @@ def judge(case, report, code, seconds):
         row.update(verdict="failed", **blank)
         before = after = None
     else:
-        row.update(verdict=report["verdict"], **judge_names(report, wanted))
+        row.update(verdict=report["verdict"], **judge_names(report, wanted, as_told(case["effects"])))
         before, after = (pair_foils(case, report[side]["foils"]) for side in ("before", "after"))
     for name, pairs in (("before", before), ("after", after)):
         for quantity, error in errors_um(pairs).items():
