@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "core/select.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* For double and for float. */
@@ -32,6 +33,33 @@
 
 SELECTION(double, fg_select)
 SELECTION(float, fg_select_float)
+
+/* Counts values below `value`, and those equal to it. */
+__attribute__((target_clones("avx2", "default"))) static void
+count_ranks(const float *values, int count, float value, int *below, int *equal) {
+  int less = 0, same = 0;
+  for (int i = 0; i < count; i++) {
+    less += values[i] < value;
+    same += values[i] == value;
+  }
+  *below = less;
+  *equal = same;
+}
+
+float fg_select_of_few(const float *values, int count, int k) {
+  float low = -INFINITY, high = INFINITY;
+  for (int i = 0; i < count; i++) {
+    int below, equal;
+    if (values[i] < low || values[i] > high) continue;
+    count_ranks(values, count, values[i], &below, &equal);
+    if (below <= k && k < below + equal) return values[i];
+    if (below > k)
+      high = values[i];
+    else
+      low = values[i];
+  }
+  return NAN;
+}
 
 static int compare_doubles(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;

@@ -13,7 +13,7 @@
 static void jacobian_row(const fg_datum_line *line, const fg_arc *arc, size_t station,
                          double row[3]) {
   double dx = line->points[station].x - arc->circle.x, dy = line->points[station].y - arc->circle.y;
-  double d = hypot(dx, dy);
+  double d = sqrt(dx * dx + dy * dy);
   row[0] = dx / d;
   row[1] = dy / d;
   row[2] = 1;
@@ -33,26 +33,52 @@ static bool normal_inverse(const fg_datum_line *line, const fg_arc *arc,
   return fg_normal_solve(&system, 0, x, inverse);
 }
 
+/* Rows of the Jacobian of a block of stations and of those within the noise's reach after it; 0
+ * where a station is not used. */
+enum { BLOCK_STATIONS = 256, BLOCK_ROWS = BLOCK_STATIONS + FG_NOISE_LAGS };
+typedef struct jacobian_block {
+  size_t count; /* of rows */
+  double x[BLOCK_ROWS], y[BLOCK_ROWS], radius[BLOCK_ROWS];
+} jacobian_block;
+
+static void fill_block(const fg_datum_line *line, const fg_arc *arc, size_t first, size_t last,
+                       jacobian_block *block) {
+  block->count = last - first + 1 < BLOCK_ROWS ? last - first + 1 : BLOCK_ROWS;
+  for (size_t i = 0; i < block->count; i++) {
+    double row[3] = {0};
+    if (fg_arc_used(line, arc, first + i)) jacobian_row(line, arc, first + i, row);
+    block->x[i] = row[0];
+    block->y[i] = row[1];
+    block->radius[i] = row[2];
+  }
+}
+
+/* middle += the sum over pairs of stations, c(lag) x_i x_j', of the block's i-th and those after
+ * it.
+ */
+static void add_pairs(const jacobian_block *block, size_t i, const fg_noise_model *noise,
+                      double middle[3][3]) {
+  const double a[3] = {block->x[i], block->y[i], block->radius[i]};
+  double half = 0.5 * noise->covariance[0], sum[3] = {half * a[0], half * a[1], half * a[2]};
+  for (size_t lag = 1; lag < noise->lags && i + lag < block->count; lag++) {
+    sum[0] += noise->covariance[lag] * block->x[i + lag];
+    sum[1] += noise->covariance[lag] * block->y[i + lag];
+    sum[2] += noise->covariance[lag] * block->radius[i + lag];
+  }
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      middle[p][q] += a[p] * sum[q] + a[q] * sum[p];
+}
+
 /* middle = sum over pairs of stations of one range, c(lag) x_i x_j'. */
 static void add_correlated(const fg_datum_line *line, const fg_arc *arc,
                            const fg_noise_model *noise, double middle[3][3]) {
+  jacobian_block block;
   for (size_t r = 0; r < arc->range_count; r++)
-    for (size_t i = arc->ranges[r].first; i <= arc->ranges[r].last; i++) {
-      if (!fg_arc_used(line, arc, i)) continue;
-      double a[3], sum[3] = {0};
-      jacobian_row(line, arc, i, a);
-      for (int p = 0; p < 3; p++)
-        sum[p] = 0.5 * noise->covariance[0] * a[p];
-      for (size_t lag = 1; lag < noise->lags && i + lag <= arc->ranges[r].last; lag++) {
-        if (!fg_arc_used(line, arc, i + lag)) continue;
-        double b[3];
-        jacobian_row(line, arc, i + lag, b);
-        for (int p = 0; p < 3; p++)
-          sum[p] += noise->covariance[lag] * b[p];
-      }
-      for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++)
-          middle[p][q] += a[p] * sum[q] + a[q] * sum[p];
+    for (size_t from = arc->ranges[r].first; from <= arc->ranges[r].last; from += BLOCK_STATIONS) {
+      fill_block(line, arc, from, arc->ranges[r].last, &block);
+      for (size_t i = 0; i < BLOCK_STATIONS && i < block.count; i++)
+        add_pairs(&block, i, noise, middle);
     }
 }
 

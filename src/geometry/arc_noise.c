@@ -31,27 +31,37 @@ typedef struct lag_sums {
   double products[FG_NOISE_LAGS], pairs[FG_NOISE_LAGS];
 } lag_sums;
 
-/* Residuals of one range, NaN where a station is left out; at most RANGE_MAX of them. */
+/* Residuals of one range, 0 where a station is left out; at most RANGE_MAX of them. `used` is 1 or
+ * 0. */
 static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range range, int values,
-                          double mean, double *list) {
+                          double mean, double *list, double *used) {
   size_t n = range.last - range.first + 1;
   if (n > RANGE_MAX) n = RANGE_MAX;
-  for (size_t i = 0; i < n; i++)
-    list[i] = residual_at(line, arc, range.first + i, values, mean);
+  for (size_t i = 0; i < n; i++) {
+    double value = residual_at(line, arc, range.first + i, values, mean);
+    used[i] = isfinite(value);
+    list[i] = isfinite(value) ? value : 0;
+  }
   return n;
+}
+
+static void add_range(const double *restrict list, const double *restrict used, size_t n,
+                      size_t lags, lag_sums *restrict sums) {
+  for (size_t i = 0; i < n; i++) {
+    size_t reach = n - i < lags ? n - i : lags;
+    for (size_t lag = 0; used[i] > 0 && lag < reach; lag++) {
+      sums->products[lag] += list[i] * list[i + lag];
+      sums->pairs[lag] += used[i + lag];
+    }
+  }
 }
 
 static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, size_t lags,
                     lag_sums *sums) {
-  double mean = values ? mean_half_width(line, arc) : 0, list[RANGE_MAX];
+  double mean = values ? mean_half_width(line, arc) : 0, list[RANGE_MAX], used[RANGE_MAX];
   for (size_t r = 0; r < arc->range_count; r++) {
-    size_t n = list_values(line, arc, arc->ranges[r], values, mean, list);
-    for (size_t i = 0; i < n; i++)
-      for (size_t lag = 0; isfinite(list[i]) && lag < lags && i + lag < n; lag++) {
-        if (!isfinite(list[i + lag])) continue;
-        sums->products[lag] += list[i] * list[i + lag];
-        sums->pairs[lag] += 1;
-      }
+    size_t n = list_values(line, arc, arc->ranges[r], values, mean, list, used);
+    add_range(list, used, n, lags, sums);
   }
 }
 

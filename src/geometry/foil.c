@@ -98,8 +98,18 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   bump->flags |= fg_defect_flags(layout, i);
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_bump_derive(design, nominal, &foil->overall, &strip, bump);
-  fg_bump_add_shadow(layout, i, design, nominal, &foil->overall, bump);
   if (!layout->fitted[i]) bump->position_deg = stretch_position_deg(foil, arc->ranges[0]);
+}
+
+static void add_shadows(const fg_layout *layout, const fg_design *design, const fg_nominal *nominal,
+                        fg_foil *foil) {
+  fg_arc_shadow lands, own;
+  fg_arc_find_shadow(&layout->line, &layout->overall, &lands);
+  for (size_t i = 0; lands.count && i < foil->bump_count; i++) {
+    if (!layout->fitted[i]) continue;
+    fg_arc_find_shadow(&layout->line, &layout->bumps[i], &own);
+    fg_bump_add_shadow(&own, &lands, design, nominal, &foil->overall, &foil->bumps[i]);
+  }
 }
 
 static double median_of(fg_context *ctx, const fg_foil *foil, double (*get)(const fg_bump *)) {
@@ -207,6 +217,7 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   foil->bump_count = n;
   for (size_t i = 0; i < n; i++)
     fill_bump(layout, i, design, &nominal, foil, &foil->bumps[i]);
+  add_shadows(layout, design, &nominal, foil);
   fg_arc_add_shadow(&layout->line, &layout->overall);
   fg_layout_overall(layout, design, &foil->overall);
   order_bumps(layout, foil);

@@ -18,8 +18,7 @@
 /* Depth of a band with the effect of a blur that differs over the bearing: the error of its shape's
  * smoothing. */
 #define UNEVEN_DEPTH 0.005
-/* Number of bearings whose shifts are independent. */
-enum { PARTS = 12 };
+enum { PARTS = FG_SHADOW_PARTS };
 
 /* One independent part of the shifts: edges that face the bearing, or, without a part, all. */
 typedef struct shift_part {
@@ -66,49 +65,49 @@ static double line_shift(const void *user, size_t station) {
              : -left;
 }
 
-/* Finds the shift of the circle's parameters under each part; returns the number of parts, 0
- * without shadow and uneven blur. */
-static size_t find_shifts(const fg_datum_line *line, const fg_arc *arc,
-                          double shifts[PARTS + 1][3]) {
+void fg_arc_find_shadow(const fg_datum_line *line, const fg_arc *arc, fg_arc_shadow *shadow) {
   const fg_picture_state *picture = &line->strip->picture;
   shift_part p = {.line = line};
-  if (!(picture->findings & (FG_PICTURE_SHADOW | FG_PICTURE_UNEVEN_BLUR))) return 0;
+  shadow->count = 0;
+  if (!(picture->findings & (FG_PICTURE_SHADOW | FG_PICTURE_UNEVEN_BLUR))) return;
   for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
     p.carried = fmax(p.carried, CARRIED_SHARE * fabs(picture->shadow_at[i]));
   if (picture->findings & FG_PICTURE_UNEVEN_BLUR) p.carried = hypot(p.carried, UNEVEN_DEPTH);
   for (p.part = -1; p.part < PARTS; p.part++)
-    if (!fg_arc_shift_by(line, arc, line_shift, &p, shifts[p.part + 1])) return 0;
-  return PARTS + 1;
+    if (!fg_arc_shift_by(line, arc, line_shift, &p, shadow->shifts[p.part + 1])) return;
+  shadow->count = PARTS + 1;
 }
 
-static void add_shifts(double shifts[PARTS + 1][3], size_t count, double covariance[3][3]) {
-  for (size_t i = 0; i < count; i++)
+static void add_shifts(const fg_arc_shadow *shadow, double covariance[3][3]) {
+  for (size_t i = 0; i < shadow->count; i++)
     for (int p = 0; p < 3; p++)
       for (int q = 0; q < 3; q++)
-        covariance[p][q] += shifts[i][p] * shifts[i][q];
+        covariance[p][q] += shadow->shifts[i][p] * shadow->shifts[i][q];
 }
 
 void fg_arc_add_shadow(const fg_datum_line *line, fg_arc *arc) {
-  double shifts[PARTS + 1][3];
-  add_shifts(shifts, find_shifts(line, arc, shifts), arc->covariance);
+  fg_arc_shadow shadow;
+  fg_arc_find_shadow(line, arc, &shadow);
+  add_shifts(&shadow, arc->covariance);
 }
 
-void fg_bump_add_shadow(const fg_layout *layout, size_t i, const fg_design *design,
-                        const fg_nominal *nominal, const fg_overall *overall, fg_bump *bump) {
-  double own[PARTS + 1][3], lands[PARTS + 1][3], both[PARTS + 1][3], covariance[3][3] = {{0}};
-  if (!layout->fitted[i]) return;
-  size_t count = find_shifts(&layout->line, &layout->bumps[i], own);
-  if (!count || find_shifts(&layout->line, &layout->overall, lands) != count) return;
+void fg_bump_add_shadow(const fg_arc_shadow *own, const fg_arc_shadow *lands,
+                        const fg_design *design, const fg_nominal *nominal,
+                        const fg_overall *overall, fg_bump *bump) {
+  fg_arc_shadow both = {.count = own->count};
+  double covariance[3][3] = {{0}};
+  if (!own->count || lands->count != own->count) return;
   double dx = bump->centre_mm.x - overall->centre_mm.x;
   double dy = bump->centre_mm.y - overall->centre_mm.y, d = hypot(dx, dy);
-  for (size_t k = 0; k < count; k++) {
-    both[k][0] = ((own[k][0] - lands[k][0]) * dx + (own[k][1] - lands[k][1]) * dy) / d;
-    both[k][1] = own[k][2];
-    both[k][2] = lands[k][2];
+  for (size_t k = 0; k < own->count; k++) {
+    const double *a = own->shifts[k], *b = lands->shifts[k];
+    both.shifts[k][0] = ((a[0] - b[0]) * dx + (a[1] - b[1]) * dy) / d;
+    both.shifts[k][1] = a[2];
+    both.shifts[k][2] = b[2];
   }
-  add_shifts(both, count, covariance);
+  add_shifts(&both, covariance);
   fg_bump_widen(design, nominal, overall, covariance, bump);
-  add_shifts(own, count, bump->covariance);
+  add_shifts(own, bump->covariance);
   for (int axis = 0; axis < 2; axis++)
     bump->u_centre_mm[axis] = sqrt(bump->covariance[axis][axis]);
 }

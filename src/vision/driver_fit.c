@@ -114,27 +114,55 @@ static double weight_of(const fg_driven_profile *p, size_t i, double noise) {
   return 1 / (noise * noise / b->count + tails * tails);
 }
 
+/* Four sums side by side, for vectors. */
+__attribute__((target_clones("avx2", "default"))) static double
+multiply_columns(const double *restrict a, const double *restrict b, size_t count) {
+  double sum[4] = {0};
+  size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (size_t k = 0; k < 4; k++)
+      sum[k] += a[i + k] * b[i + k];
+  for (; i < count; i++)
+    sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/* Turns the first column from the model's counts to residuals, and fills the weights; returns the
+ * weighted squares. */
+static double weigh_residuals(const solver *s, const fg_driven_profile *p, double *weights) {
+  double *residuals = derivative_column(s, 0), squares = 0;
+  for (size_t i = 0; i < p->count; i++) {
+    residuals[i] = p->bins[i].value - residuals[i];
+    weights[i] = weight_of(p, i, s->fit->noise);
+    squares += weights[i] * residuals[i] * residuals[i];
+  }
+  return squares;
+}
+
 static double add_profile(const solver *s, const fg_driven_profile *p, profile_equations *part) {
-  double row[FG_DRIVEN_VALUES], common[FG_DRIVER_VALUES], squares = 0;
+  double weights[FG_DRIVEN_MAX], weighted[FG_DRIVEN_MAX];
+  double squares = weigh_residuals(s, p, weights);
   memset(part, 0, sizeof *part);
   fg_normal_clear(&part->system, FG_DRIVEN_VALUES);
-  for (size_t i = 0; i < p->count; i++) {
-    double residual = p->bins[i].value - derivative_column(s, 0)[i];
-    double weight = weight_of(p, i, s->fit->noise);
-    for (size_t k = 0; k < FG_DRIVEN_VALUES; k++)
-      row[k] = derivative_column(s, 1 + k)[i];
-    for (size_t k = 0; k < s->q; k++)
-      common[k] = derivative_column(s, 1 + FG_DRIVEN_VALUES + k)[i];
-    fg_normal_add(&part->system, row, residual, weight);
-    for (size_t k = 0; k < s->q; k++) {
-      for (size_t j = 0; j < FG_DRIVEN_VALUES; j++)
-        part->cross[k][j] += weight * common[k] * row[j];
-      for (size_t j = 0; j < s->q; j++)
-        part->common[k][j] += weight * common[k] * common[j];
-      part->right[k] += weight * common[k] * residual;
+  for (size_t k = 0; k < FG_DRIVEN_VALUES + s->q; k++) {
+    const double *column = derivative_column(s, 1 + k);
+    bool own = k < FG_DRIVEN_VALUES;
+    size_t common = own ? 0 : k - FG_DRIVEN_VALUES;
+    for (size_t i = 0; i < p->count; i++)
+      weighted[i] = weights[i] * column[i];
+    for (size_t j = 0; j <= k; j++) {
+      double product = multiply_columns(weighted, derivative_column(s, 1 + j), p->count);
+      if (own)
+        part->system.matrix[k][j] = product;
+      else if (j < FG_DRIVEN_VALUES)
+        part->cross[common][j] = product;
+      else
+        part->common[common][j - FG_DRIVEN_VALUES] = product;
     }
-    squares += weight * residual * residual;
+    double right = multiply_columns(weighted, derivative_column(s, 0), p->count);
+    *(own ? &part->system.right[k] : &part->right[common]) = right;
   }
+  part->system.sum_squares = squares;
   for (size_t k = 0; k < FG_DRIVEN_VALUES; k++)
     if (p->held >> k & 1) part->system.matrix[k][k] = 1;
   return squares;

@@ -82,6 +82,9 @@ static inline double fg_driver_tone_at(const fg_driver_tone *tone, double light,
   return tone->count[i] + (light - fg_driver_tone_light(i)) * *rate;
 }
 
+/* Turns light at many places to counts. */
+void fg_driver_tone_all(const fg_driver_tone *tone, size_t count, double *light);
+
 /* Slope of S in its middle, less 1. */
 double fg_driver_extra_slope(const fg_driver *driver);
 

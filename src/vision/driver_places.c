@@ -105,37 +105,49 @@ static void blur_grid(double radius_px, const double *at, size_t count, double *
 }
 
 /* A cubic through four neighbours; `at` from the grid's first value. */
-static double cubic_at(const double *grid, size_t count, double at) {
-  size_t i = at > 1 ? (size_t)at : 1;
-  if (i + 3 > count) i = count - 3;
-  double f = at - (double)i;
-  return grid[i - 1] * (-f * (f - 1) * (f - 2) / 6) + grid[i] * ((f + 1) * (f - 1) * (f - 2) / 2) +
-         grid[i + 1] * (-(f + 1) * f * (f - 2) / 2) + grid[i + 2] * ((f + 1) * f * (f - 1) / 6);
+static inline double cubic_at(const double *grid, int last, double at) {
+  int i = at > 1 ? (int)at : 1;
+  i = i < last ? i : last;
+  double f = at - i, f0 = f + 1, f1 = f - 1, f2 = f - 2;
+  return grid[i - 1] * (-f * f1 * f2 / 6) + grid[i] * (f0 * f1 * f2 / 2) +
+         grid[i + 1] * (-f0 * f * f2 / 2) + grid[i + 2] * (f0 * f * f1 / 6);
 }
 
-static double on_scale(double count) {
-  return !(count > 0) ? 0 : count > 255 ? 255 : count; /* fmin and fmax are calls */
+static inline double on_scale(double count) {
+  double low = count > 0 ? count : 0; /* fmin and fmax are calls */
+  return low < 255 ? low : 255;
+}
+
+/* Values at the places, of a function that is given on the grid. */
+__attribute__((target_clones("avx2", "default"))) static void
+read_grid(const double *restrict across, double from_px, const double *restrict grid, size_t size,
+          size_t count, double *restrict values) {
+  int last = (int)size - 3;
+  for (size_t i = 0; i < count; i++)
+    values[i] = cubic_at(grid, last, (across[i] - from_px) / FG_DRIVEN_STEP_PX);
+}
+
+__attribute__((target_clones("avx2", "default"))) static void
+mask_counts(double amount, const double *restrict asked, const double *blurred, size_t count,
+            double *counts) {
+  for (size_t i = 0; i < count; i++)
+    counts[i] = on_scale((1 + amount) * asked[i] - amount * blurred[i]);
 }
 
 /* The counts from those before the mask, and from their blur. */
 static void sharpen_counts(const fg_driven_places *places, double amount, const double *plain,
                            const double *blurred, double *counts) {
   const double *asked = plain + (places->regular ? places->reach : 0);
-  for (size_t i = 0; i < places->count; i++) {
-    double blur = 0;
-    if (amount != 0)
-      blur = places->regular ? blurred[i]
-                             : cubic_at(blurred, places->grid,
-                                        (places->across[i] - places->from_px) / FG_DRIVEN_STEP_PX);
-    counts[i] = on_scale(amount == 0 ? asked[i] : (1 + amount) * asked[i] - amount * blur);
+  if (amount == 0) {
+    for (size_t i = 0; i < places->count; i++)
+      counts[i] = on_scale(asked[i]);
+    return;
   }
-}
-
-static void tone_light(const fg_driver_tone *tone, size_t count, double *light) {
-  double rate;
-  if (tone->linear) return;
-  for (size_t i = 0; i < count; i++)
-    light[i] = fg_driver_tone_at(tone, light[i], &rate);
+  if (!places->regular) {
+    read_grid(places->across, places->from_px, blurred, places->grid, places->count, counts);
+    blurred = counts;
+  }
+  mask_counts(amount, asked, blurred, places->count, counts);
 }
 
 static void blur_plain(const fg_driven_places *places, const fg_driver *driver, const double *plain,
@@ -156,7 +168,7 @@ void fg_driven_places_keep(const fg_driver *driver, const fg_driver_tone *tone,
   for (int side = places->single; side < 2; side++)
     fg_lit_side_fill(&lit, side, lossy, places->across, count, &places->kept[side]);
   fg_lit_add(&lit, sides, count, places->plain);
-  tone_light(tone, count, places->plain);
+  fg_driver_tone_all(tone, count, places->plain);
   blur_plain(places, driver, places->plain, places->blurred);
   sharpen_counts(places, driver->values[FG_DRIVER_AMOUNT], places->plain, places->blurred, counts);
 }
@@ -192,7 +204,7 @@ void fg_driven_places_vary(const fg_driver *driver, const fg_driver_tone *tone,
     for (int side = places->single; side < 2; side++)
       sides[side] = side_for(&lit, side, places);
     fg_lit_add(&lit, sides, all_count(places), places->other_plain);
-    tone_light(tone, all_count(places), places->other_plain);
+    fg_driver_tone_all(tone, all_count(places), places->other_plain);
     plain = places->other_plain;
   }
   bool was_blurred = places->driver.values[FG_DRIVER_AMOUNT] != 0 &&

@@ -88,6 +88,12 @@ void fg_driver_tone_fill(const fg_driver *driver, fg_driver_tone *tone) {
   tone->below = (tone->count[0] - fg_driver_count(driver, -dark)) / dark;
 }
 
+void fg_driver_tone_all(const fg_driver_tone *tone, size_t count, double *light) {
+  double rate;
+  for (size_t i = 0; i < count && !tone->linear; i++)
+    light[i] = fg_driver_tone_at(tone, light[i], &rate);
+}
+
 double fg_driver_tone_inverse(const fg_driver_tone *tone, double count) {
   if (tone->linear) return count;
   int low = 0, high = FG_DRIVER_TONE_STEPS + 1;

@@ -182,8 +182,8 @@ static void mark_wanted(fg_tiles *tiles, int32_t strip) {
   for (int32_t c = 0; c < tiles->columns; c++) {
     copy_blocks(tiles, c, strip, blocks);
     tiles->wanted[first + (size_t)c] = has_contrast(blocks);
-    tiles->medians[first + (size_t)c] =
-        fg_select_float(blocks, sizeof blocks / sizeof *blocks, sizeof blocks / sizeof *blocks / 2);
+    tiles->medians[first + (size_t)c] = fg_select_of_few(blocks, sizeof blocks / sizeof *blocks,
+                                                         sizeof blocks / sizeof *blocks / 2);
   }
 }
 

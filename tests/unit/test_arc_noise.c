@@ -4,6 +4,7 @@
 #include "support/brief.h"
 #include "support/measured_render.h"
 
+#include "core/small_solve.h"
 #include "geometry/arcs.h"
 #include "support/random.h"
 #include "support/test.h"
@@ -49,6 +50,47 @@ static void draw_arcs(arcs_strip *a, double sd_mm, double rho, uint64_t *seed) {
 static void free_arcs(arcs_strip *a) {
   fg_datum_line_free(&a->line);
   free(a->strip.stations);
+}
+
+/* A (sum over pairs c_|i-j| x_i x_j') A, pair by pair. */
+static double radius_variance(const arcs_strip *a, const fg_arc *arc, const fg_noise_model *noise) {
+  static double rows[POINTS][3];
+  fg_normal_equations system;
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], weights[POINTS], sum = 0;
+  fg_normal_clear(&system, 3);
+  for (size_t i = 0; i < POINTS; i++) {
+    const fg_point *p = &a->line.points[arc->ranges[0].first + i];
+    double dx = p->x - arc->circle.x, dy = p->y - arc->circle.y, d = hypot(dx, dy);
+    const double row[3] = {dx / d, dy / d, 1};
+    memcpy(rows[i], row, sizeof row);
+    fg_normal_add(&system, row, 0, 1);
+  }
+  assert_true(fg_normal_solve(&system, 0, x, inverse));
+  for (size_t i = 0; i < POINTS; i++)
+    weights[i] = inverse[2][0] * rows[i][0] + inverse[2][1] * rows[i][1] + inverse[2][2];
+  for (size_t i = 0; i < POINTS; i++)
+    for (size_t j = 0; j < POINTS; j++) {
+      size_t lag = i > j ? i - j : j - i;
+      if (lag < noise->lags) sum += noise->covariance[lag] * weights[i] * weights[j];
+    }
+  return sum;
+}
+
+/* Pairs are as far apart as the noise's lags, more than an arc's stations are read at once. */
+static void all_pairs_of_stations_count(void **state) {
+  (void)state;
+  uint64_t seed = 5;
+  arcs_strip a;
+  fg_noise_model noise = {.lags = 200, .integral_stations = 1};
+  draw_arcs(&a, 1e-5, 0, &seed);
+  for (size_t lag = 0; lag < noise.lags; lag++)
+    noise.covariance[lag] = 1e-8 * exp(-(double)lag / 40);
+  fg_arc arc = a.arcs[1];
+  arc.scatter_mm = 1; /* no outliers */
+  fg_arc_covariance(&a.line, &noise, &arc);
+  double expected = radius_variance(&a, &arc, &noise);
+  assert_near(arc.covariance[2][2] / expected, 1, 1e-9);
+  free_arcs(&a);
 }
 
 /* Ratio of the true variance of R to the mean of the reported variance, over trials. */
@@ -171,6 +213,7 @@ static void intervals_cover_the_truth(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(all_pairs_of_stations_count),
       cmocka_unit_test(white_noise),
       cmocka_unit_test(correlated_noise),
       cmocka_unit_test(arcs_end_before_the_fillets),

@@ -3,6 +3,7 @@
  * way. */
 #include "support/measured_render.h"
 
+#include "core/select.h"
 #include "support/random.h"
 #include "support/test.h"
 #include "vision/segment.h"
@@ -167,8 +168,22 @@ static void dust_is_no_foil(void **state) {
   }
 }
 
+/* A tile's median is that of the sorted blocks, also where many are alike. */
+static void test_few_values_are_selected_like_many(void **state) {
+  enum { COUNT = 64 };
+  (void)state;
+  for (int kinds = 1; kinds <= 512; kinds *= 2)
+    for (int k = 0; k < COUNT; k++) {
+      float values[COUNT], copy[COUNT];
+      for (int i = 0; i < COUNT; i++)
+        values[i] = copy[i] = (float)(i * 7919 % 521 % kinds);
+      assert_true(fg_select_of_few(values, COUNT, k) == fg_select_float(copy, COUNT, (size_t)k));
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_few_values_are_selected_like_many),
       cmocka_unit_test(kept_pixels_are_the_scans_own),
       cmocka_unit_test(tiles_do_not_depend_on_how_rows_arrive),
       cmocka_unit_test(polarity_and_contrast_are_found_under_shading),
