@@ -44,6 +44,7 @@ enum {
 typedef struct fg_segment_profile {
   fg_profile_bin *bins;
   fg_profile_fit fit;
+  bool wall[2]; /* a wall shows beside this edge, or it is not known whether */
 } fg_segment_profile;
 
 /* One strip in work: its pixels, stations and segments, and their common values. */
@@ -67,7 +68,8 @@ typedef struct fg_edge_work {
   double noise;    /* sd of a pixel, counts */
   double contrast; /* |P - b|, counts */
   bool clipped, side_band;
-  bool linear; /* gamma is 1, as the user states */
+  double outer_px; /* reach of the model beside the edges of a foil whose wall shows; 0: no wall */
+  bool linear;     /* gamma is 1, as the user states */
   double thickness_px, blur_px[2];
   double gamma, u_gamma;
   double
@@ -95,6 +97,14 @@ fg_status fg_edges_collect(fg_context *ctx, fg_edge_work *work);
 /* Steps 1 and 2: finds the tone curve and the shape of every station from its middle.
  * edges_shape.c, edges_smooth.c */
 fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work);
+
+/* Finds the sides of segments beside which a wall shows, and with them work->outer_px. edges_wall.c
+ */
+fg_status fg_edges_find_walls(fg_context *ctx, fg_edge_work *work);
+
+/* Bins of a segment within the model's reach. */
+void fg_edges_reach(const fg_edge_work *work, const fg_segment_profile *segment, size_t *first,
+                    size_t *count);
 
 /* Finds the driver's model where the plain model misses the segments' profiles. *found: segments
  * are to be fitted again. edges_driver.c */

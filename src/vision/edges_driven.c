@@ -68,11 +68,12 @@ fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t 
   }
   double radius = work->driver->values[FG_DRIVER_RADIUS];
   if (work->driver->values[FG_DRIVER_AMOUNT] == 0) radius = 0;
-  float reach_px[FG_CHUNK_STATIONS][2];
+  float reach_px[FG_CHUNK_STATIONS][2],
+      outer = work->outer_px > 0 ? (float)work->outer_px : INFINITY;
   for (size_t i = first; i <= last; i++)
     for (int side = 0; side < 2; side++)
-      reach_px[i - first][side] =
-          (float)FG_REACH_BLURS * hypotf(work->stations[i].blur_px[side], (float)radius);
+      reach_px[i - first][side] = fminf(
+          outer, (float)FG_REACH_BLURS * hypotf(work->stations[i].blur_px[side], (float)radius));
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     size_t station = (size_t)band->pixels[i].station, k = (station - first) / BLOCK_STATIONS;

@@ -18,6 +18,8 @@
 #define MERGED_BLUR_PX 1.6
 /* First estimate of a pixel's sd, counts. */
 #define START_NOISE 1.5
+/* Min number of profiles of a driver's fit. */
+#define SAMPLE_MIN 4
 
 /* Profiles of the driver's fit, and their bins, none of them empty. */
 typedef struct sample {
@@ -91,8 +93,9 @@ static fg_profile_bin merge_bins(const fg_profile_bin *a, const fg_profile_bin *
 static size_t copy_bins(const fg_edge_work *work, const fg_segment_profile *segment,
                         fg_profile_bin *bins) {
   const double *blur = segment->fit.shape.blur_px;
-  size_t n = 0, step = fmin(blur[0], blur[1]) > MERGED_BLUR_PX ? 2 : 1;
-  for (size_t i = 0; i + step <= work->bin_count && n + 8 < FG_DRIVEN_MAX; i += step) {
+  size_t n = 0, step = fmin(blur[0], blur[1]) > MERGED_BLUR_PX ? 2 : 1, first, count;
+  fg_edges_reach(work, segment, &first, &count);
+  for (size_t i = first; i + step <= first + count && n + 8 < FG_DRIVEN_MAX; i += step) {
     fg_profile_bin bin = segment->bins[i];
     if (step == 2) bin = merge_bins(&segment->bins[i], &segment->bins[i + 1]);
     if (bin.count > 0) bins[n++] = bin;
@@ -116,15 +119,64 @@ static bool is_sound(const fg_segment_profile *segment, double limit) {
   return segment->fit.good && segment->fit.noise <= limit;
 }
 
+static void add_ends(const fg_driven_profile *p, sample *s) {
+  for (int k = FG_DRIVEN_PLATEAU; k <= FG_DRIVEN_LEVEL_R; k++) {
+    s->ends[0] = fmin(s->ends[0], p->values[k]);
+    s->ends[1] = fmax(s->ends[1], p->values[k]);
+  }
+}
+
 static void add_to_sample(const fg_edge_work *work, const fg_segment_profile *segment, sample *s) {
   fg_driven_profile *p = &s->profiles[s->count];
   fg_profile_bin *bins = s->bins + s->count++ * work->bin_count;
   *p = driven_profile(work, &segment->fit);
   p->bins = bins;
   p->count = copy_bins(work, segment, bins);
-  for (int k = FG_DRIVEN_PLATEAU; k <= FG_DRIVEN_LEVEL_R; k++) {
-    s->ends[0] = fmin(s->ends[0], p->values[k]);
-    s->ends[1] = fmax(s->ends[1], p->values[k]);
+  add_ends(p, s);
+}
+
+/* One edge of a segment as a profile of its own, outwards. */
+static fg_driven_profile side_of(const fg_driven_profile *both, int side) {
+  static const unsigned held =
+      1u << FG_DRIVEN_LEFT | 1u << FG_DRIVEN_LEVEL_L | 1u << FG_DRIVEN_BLUR_L;
+  fg_driven_profile p = {.single = true, .held = held};
+  p.values[FG_DRIVEN_PLATEAU] = both->values[FG_DRIVEN_PLATEAU];
+  p.values[FG_DRIVEN_SLOPE_R] = both->values[FG_DRIVEN_SLOPE_L + side];
+  for (int k = 0; k < 2; k++) {
+    p.values[FG_DRIVEN_LEFT + k] = (side ? 1 : -1) * both->values[FG_DRIVEN_LEFT + side];
+    p.values[FG_DRIVEN_LEVEL_L + k] = both->values[FG_DRIVEN_LEVEL_L + side];
+    p.values[FG_DRIVEN_BLUR_L + k] = both->values[FG_DRIVEN_BLUR_L + side];
+  }
+  return p;
+}
+
+/* Adds one edge of a segment, from the middle of the strip on. */
+static void add_side_to_sample(const fg_edge_work *work, const fg_segment_profile *segment,
+                               int side, sample *s) {
+  fg_driven_profile both = driven_profile(work, &segment->fit), *p = &s->profiles[s->count];
+  fg_profile_bin *bins = s->bins + s->count++ * work->bin_count;
+  double way = side ? 1 : -1;
+  double middle = 0.5 * way * (both.values[FG_DRIVEN_LEFT] + both.values[FG_DRIVEN_RIGHT]);
+  *p = side_of(&both, side);
+  p->bins = bins;
+  for (size_t i = 0; i < work->bin_count && p->count + 8 < FG_DRIVEN_MAX; i++) {
+    fg_profile_bin bin = segment->bins[side ? i : work->bin_count - 1 - i];
+    bin.across_px *= way;
+    if (bin.count > 0 && bin.across_px > middle) bins[p->count++] = bin;
+  }
+  add_ends(p, s);
+}
+
+/* Chooses edges without a wall of sound segments, spread along the strip. */
+static void draw_sides(const fg_edge_work *work, double limit, sample *s) {
+  size_t sound = 0, seen = 0;
+  for (size_t i = 0; i < 2 * work->segment_count; i++)
+    sound += is_sound(&work->segments[i / 2], limit) && !work->segments[i / 2].wall[i % 2];
+  for (size_t i = 0; i < 2 * work->segment_count && s->count < FG_DRIVER_PROFILES; i++) {
+    const fg_segment_profile *segment = &work->segments[i / 2];
+    if (!is_sound(segment, limit) || segment->wall[i % 2]) continue;
+    if (seen++ * FG_DRIVER_PROFILES >= s->count * sound)
+      add_side_to_sample(work, segment, (int)(i % 2), s);
   }
 }
 
@@ -137,6 +189,10 @@ static fg_status draw_sample(fg_context *ctx, const fg_edge_work *work, sample *
   FG_TRY(find_noise_limit(ctx, work, &limit));
   s->ends[0] = INFINITY;
   s->ends[1] = -INFINITY;
+  if (work->outer_px > 0) {
+    draw_sides(work, limit, s);
+    return FG_OK;
+  }
   for (size_t i = 0; i < work->segment_count; i++)
     sound += is_sound(&work->segments[i], limit);
   for (size_t i = 0; i < work->segment_count && s->count < FG_DRIVER_PROFILES; i++)
@@ -221,11 +277,13 @@ fg_status fg_edges_find_driver(fg_context *ctx, fg_edge_work *work, bool *found)
   FG_TRY_EXIT(draw_sample(ctx, work, &s));
   bool missed = is_missed(work, &s, scratch), few = work->level_step > FG_LEVEL_STEP_MAX;
   work->unexplained = missed && few;
-  *found = !work->clipped && !few && (missed || fabs(log(work->gamma)) > LN_GAMMA_MAX);
+  bool asked = missed || fabs(log(work->gamma)) > LN_GAMMA_MAX || work->outer_px > 0;
+  *found = !work->clipped && !few && s.count >= SAMPLE_MIN && asked;
   if (!*found) goto exit;
   FG_TRY_EXIT(
       fg_driver_choose(ctx, s.profiles, s.count, s.ends, work->gamma, START_NOISE, &choice));
-  if (choice.fit.good)
+  /* A model that misses edges without a wall says nothing of those beside it. */
+  if (choice.fit.good && !(choice.missed && work->outer_px > 0))
     FG_TRY_EXIT(adopt_choice(ctx, work, &choice));
   else
     work->unexplained = true;

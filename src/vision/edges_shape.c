@@ -111,9 +111,11 @@ static fg_status stack_task(fg_context *ctx, void *shared, size_t chunk) {
 static fg_status fit_task(fg_context *ctx, void *shared, size_t i) {
   fg_edge_work *work = shared;
   fg_segment_profile *s = &work->segments[i];
+  size_t first, count;
+  fg_edges_reach(work, s, &first, &count);
   start_fit(work, s, &s->fit);
   if (work->driver) return fg_edges_fit_driven(ctx, work, s);
-  fg_profile_fit_model(work->tables, s->bins, work->bin_count, 0, &s->fit);
+  fg_profile_fit_model(work->tables, s->bins + first, count, 0, &s->fit);
   return FG_OK;
 }
 
@@ -290,6 +292,8 @@ static fg_status fit_all(fg_context *ctx, fg_edge_work *work) {
 static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
   bool found = false;
   FG_TRY(fit_all(ctx, work));
+  if (!work->again) FG_TRY(fg_edges_find_walls(ctx, work));
+  if (!work->again && work->outer_px > 0) FG_TRY(fit_all(ctx, work));
   if (!work->again && !work->plain) FG_TRY(fg_edges_find_driver(ctx, work, &found));
   if (found) FG_TRY(fit_all(ctx, work));
   return fg_edges_smooth_shape(ctx, work, true);

@@ -13,16 +13,19 @@
 
 /* Values of a station that all its pixels share. */
 typedef struct held {
-  float edge_px[2], blur_inverse[2], plateau, step[2], slope[2], slope_blur[2];
+  float edge_px[2], blur_inverse[2], plateau, step[2], slope[2], slope_blur[2], reach[2];
 } held;
 
-static held held_of_station(const fg_edge_station *s) {
+static held held_of_station(const fg_edge_work *work, const fg_edge_station *s) {
+  float outer = work->outer_px > 0 ? (float)work->outer_px : INFINITY;
   return (held){.edge_px = {s->edge_px[0], s->edge_px[1]},
                 .blur_inverse = {1.0f / s->blur_px[0], 1.0f / s->blur_px[1]},
                 .plateau = s->plateau,
                 .step = {s->step[0], s->step[1]},
                 .slope = {s->slope[0], s->slope[1]},
-                .slope_blur = {s->slope[0] * s->blur_px[0], s->slope[1] * s->blur_px[1]}};
+                .slope_blur = {s->slope[0] * s->blur_px[0], s->slope[1] * s->blur_px[1]},
+                .reach = {fminf((float)FG_REACH_BLURS, outer / s->blur_px[0]),
+                          fminf((float)FG_REACH_BLURS, outer / s->blur_px[1])}};
 }
 
 /* Adds one pixel to its station. */
@@ -31,7 +34,7 @@ static inline void add_pixel(const fg_edge_tables *tables, const held *h, fg_edg
   float d1 = h->edge_px[0] - across, d2 = across - h->edge_px[1];
   float i1 = h->blur_inverse[0], i2 = h->blur_inverse[1];
   float t1 = d1 * i1, t2 = d2 * i2;
-  if (t1 > (float)FG_REACH_BLURS || t2 > (float)FG_REACH_BLURS) return;
+  if (t1 > h->reach[0] || t2 > h->reach[1]) return;
   float p1, c1, p2, c2;
   fg_edge_normal(tables, t1, &p1, &c1);
   fg_edge_normal(tables, t2, &p2, &c2);
@@ -100,7 +103,7 @@ static void add_plain(const fg_edge_work *work, size_t chunk, size_t first, size
                       float limit) {
   held holds[FG_CHUNK_STATIONS];
   for (size_t i = first; i <= last; i++)
-    holds[i - first] = held_of_station(&work->stations[i]);
+    holds[i - first] = held_of_station(work, &work->stations[i]);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];

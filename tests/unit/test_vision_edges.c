@@ -193,6 +193,31 @@ static void a_side_wall_is_flagged(void **state) {
   }
 }
 
+/* The wall's light is neither taken for a driver's work nor for a wide blur. */
+static void edges_beside_a_wall_are_on_the_truth(void **state) {
+  (void)state;
+  static const char *walls[] = {
+      "{\"amplitude\":0.35,\"direction_deg\":90,\"length_px\":8,\"gap_px\":2}",
+      "{\"amplitude\":0.55,\"direction_deg\":100,\"length_px\":10,\"gap_px\":1}",
+  };
+  for (size_t i = 0; i < 2; i++) {
+    char scanner[400];
+    snprintf(scanner, sizeof scanner,
+             "\"blur_px\":2.1,\"gamma\":1.2,\"noise\":1.6,\"rough\":{\"side_wall\":%s,"
+             "\"halo\":{\"fraction\":0.15,\"length_px\":15}}",
+             walls[i]);
+    measured m = measure_scanner(scanner);
+    const fg_foil *foil = &m.result.foils[0];
+    line_error e = compare_line(&m);
+    assert_true(foil->flags & FG_FOIL_SIDE_BAND);
+    assert_near(e.mean_px, 0, 0.3);
+    assert_near(e.worst_px, 0, 0.4);
+    assert_near(foil->strip.gamma, 1.2, 0.1);
+    assert_near(foil->thickness_mm * 1000, 100, 2);
+    measured_free(&m);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(edges_are_on_the_truth),
@@ -200,6 +225,7 @@ int main(void) {
       cmocka_unit_test(two_blurs_are_told_apart),
       cmocka_unit_test(clipping_is_flagged),
       cmocka_unit_test(a_side_wall_is_flagged),
+      cmocka_unit_test(edges_beside_a_wall_are_on_the_truth),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
