@@ -58,9 +58,11 @@ static bool factor_cholesky(const fg_normal_equations *system, double damping,
   return true;
 }
 
-static void substitute_lower(size_t n, double lower[FG_SMALL_MAX][FG_SMALL_MAX], double *x) {
-  for (size_t i = 0; i < n; i++) {
-    for (size_t k = 0; k < i; k++)
+/* x is 0 before `first`. */
+static void substitute_lower(size_t n, double lower[FG_SMALL_MAX][FG_SMALL_MAX], size_t first,
+                             double *x) {
+  for (size_t i = first; i < n; i++) {
+    for (size_t k = first; k < i; k++)
       x[i] -= lower[i][k] * x[k];
     x[i] /= lower[i][i];
   }
@@ -77,11 +79,11 @@ bool fg_normal_solve(const fg_normal_equations *system, double damping, double *
   size_t n = system->unknowns;
   if (!factor_cholesky(system, damping, lower)) return false;
   memcpy(x, system->right, n * sizeof *x);
-  substitute_lower(n, lower, x);
+  substitute_lower(n, lower, 0, x);
   for (size_t c = 0; inverse && c < n; c++) {
     double unit[FG_SMALL_MAX] = {0};
     unit[c] = 1;
-    substitute_lower(n, lower, unit);
+    substitute_lower(n, lower, c, unit);
     for (size_t r = 0; r < n; r++)
       inverse[r][c] = unit[r];
   }
