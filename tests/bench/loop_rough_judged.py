@@ -31,8 +31,8 @@ def own_row(row):
     """An effect that no single row explains is unattributed, or has its own row (seams), or is told as one of the
     explanations of a tie."""
     said = set(filter(None, row["claims"].split(" + ")))
-    as_curve = "free." in row["wanted"] and bool(number(row, "in_class"))
-    return as_curve or bool(row["unattributed"]) and not said or ("scan.column_step" in row["wanted"] and said == {"scan.column_step"})
+    as_curve = bool(row["unattributed"]) and not said or ("free." in row["wanted"] and bool(number(row, "in_class")))
+    return as_curve or ("scan.column_step" in row["wanted"] and said == {"scan.column_step"})
 
 
 def is_right(row):
