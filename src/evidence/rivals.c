@@ -13,6 +13,7 @@ enum {
   DEGREE = 8,
   RING_LAST = 9,
   DIRECTION_LAST = 9,
+  DISCS_MAX = 8,
   BUMP_FIRST = 3,
   BUMP_ORDERS = 8,
   PHI_ORDERS = 20,
@@ -248,6 +249,32 @@ static bool phi_variances(const fg_edge_fit *edge_fit, size_t i, double *varianc
   return true;
 }
 
+/* ---- of single discs ---- */
+
+/* Of few discs alone: where many are, a cause of the scanner shows on too many of them to be the
+ * form of one. */
+static size_t numbers_of_disc(const fg_edge_fit *edge_fit) {
+  return edge_fit->discs && edge_fit->part_count <= DISCS_MAX ? 2 * (DIRECTION_LAST - 1) : 0;
+}
+
+/* Harmonics from the oval on: the lower ones are the disc's radius and place. */
+static size_t over_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
+  size_t each = numbers_of_disc(edge_fit), count = each * edge_fit->part_count;
+  memset(values, 0, count * sizeof *values);
+  for (size_t c = 0; c < each; c += 2) {
+    double angle = (double)(c / 2 + 2) * M_PI * row->phi;
+    values[each * row->part + c] = cos(angle);
+    values[each * row->part + c + 1] = sin(angle);
+  }
+  return count;
+}
+
+static bool disc_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
+  if (i >= 3 || !numbers_of_disc(edge_fit)) return false;
+  fill_falling(2, DIRECTION_LAST, 2, 1 + 2 * (double)i, variance);
+  return true;
+}
+
 /* ---- of the lands, alike on all ---- */
 
 static size_t over_lands(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
@@ -352,7 +379,8 @@ static size_t two_columns(const fg_edge_fit *edge_fit) {
 }
 
 bool fg_rival_shows(const fg_rival *rival, const fg_edge_fit *edge_fit) {
-  return !edge_fit->discs || rival->glass || rival->coordinate == FG_EFFECT_NORMAL;
+  return !edge_fit->discs || rival->glass || rival->coordinate == FG_EFFECT_NORMAL ||
+         rival->coordinate == FG_EFFECT_COORDINATES;
 }
 
 const fg_effect *fg_rival_curve(fg_effect_coordinate coordinate, const char *moves) {
@@ -451,5 +479,10 @@ const fg_rival fg_rivals[] = {
      .coordinate = FG_EFFECT_NORMAL,
      .columns = over_direction,
      .variances = direction_variances},
+    {.name = "disc.form of one disc",
+     .coordinate = FG_EFFECT_COORDINATES, /* no curve: it is the disc's own */
+     .columns = over_disc,
+     .variances = disc_variances,
+     .stretch = numbers_of_disc},
     {.name = NULL},
 };

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "evidence/unnamed.h"
+
 /* Share of the whole evidence by which a cause leads, too: with edges so sharp the error of linear
  * columns decides. */
 #define LEAD_SHARE 3e-4
@@ -86,6 +88,7 @@ static bool holds_or_extends(const fg_evidence_model *model, const fg_effect *ef
 }
 
 bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other) {
+  if (model->parts < other->parts) return false; /* the other one holds an effect twice */
   for (size_t k = 0; k < other->parts; k++) {
     const fg_evidence_part *part = other->part[k];
     if (part->effect ? !holds_or_extends(model, part->effect) : !holds_rival_of(model, part))
@@ -221,6 +224,35 @@ static tie_range choose_range(const fg_evidence_search *s, double named, double 
   return (tie_range){score - FG_EVIDENCE_LEAD, nameless};
 }
 
+static double find_best_without(const fg_evidence_search *s, const fg_effect *effect) {
+  for (size_t m = 0; m < s->count; m++) /* sorted */
+    if (!fg_evidence_holds(&s->models[m], effect)) return s->models[m].score;
+  return -INFINITY;
+}
+
+static bool holds_rival_over(const fg_evidence_model *model, int axis) {
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_evidence_part *part = model->part[k];
+    bool unnamed = part->rival || fg_effect_is_unnamed(part->effect);
+    fg_effect_coordinate over = part->rival ? part->rival->coordinate : part->effect->coordinate;
+    if (unnamed && over == (axis ? FG_EFFECT_Y : FG_EFFECT_X)) return true;
+  }
+  return false;
+}
+
+/* A jump of the picture is no piece of what changes smoothly over something else, nor of the forms
+ * of discs: it is found beside them where every explanation without it is refuted. On a foil, whose
+ * bumps end in jumps of their own, it is not. */
+static void find_certain(const fg_evidence_search *s, double margin, fg_evidence_verdict *v) {
+  const fg_evidence_model *model = &v->tie[0];
+  for (size_t k = 0; s->problem.edge_fit->discs && v->ties == 1 && k < model->parts; k++) {
+    const fg_effect *effect = model->part[k]->effect;
+    v->certain[k] = effect && effect->jumps && !fg_effect_is_unnamed(effect) &&
+                    !holds_rival_over(model, effect->axis) &&
+                    find_best_without(s, effect) < model->score - margin;
+  }
+}
+
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
  * share of the evidence. What leads it by less is no rival; what follows it closely is. */
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence_verdict *v) {
@@ -238,5 +270,6 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence
   v->outcome = !isfinite(named) ? FG_EVIDENCE_UNATTRIBUTED
                : v->ties > 1    ? FG_EVIDENCE_TIED
                                 : FG_EVIDENCE_FOUND;
+  if (v->outcome == FG_EVIDENCE_UNATTRIBUTED) find_certain(s, margin, v);
   return FG_OK;
 }

@@ -22,6 +22,8 @@ typedef struct fg_evidence_verdict {
   fg_evidence_model tie[FG_EVIDENCE_TIES]; /* likeliest first; of FOUND one, of CLEAN none */
   double middle_mm[FG_EVIDENCE_TIES][FG_EVIDENCE_PARTS]; /* of polynomials: their middle */
   size_t ties;
+  /* Of UNATTRIBUTED: named effects of tie[0] that no explanation can do without. */
+  bool certain[FG_EVIDENCE_PARTS];
   double p_null; /* posterior probability of no effect */
 } fg_evidence_verdict;
 

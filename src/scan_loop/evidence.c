@@ -78,15 +78,16 @@ static size_t find_candidate(const fg_edge_fit *edge_fit, fg_explanations *to,
   return at;
 }
 
+/* `certain`: only these named effects of the model; NULL: all. */
 static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model *model,
-                            const double *middle_mm, double top, bool rivals_alone,
+                            const double *middle_mm, double top, const bool *certain,
                             fg_explanations *to) {
   if (to->count == FG_EXPLANATIONS_MAX) return;
   fg_explanation one = {.dof = 1, .excess = 1 + 2 * (top - model->score)};
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
     const fg_effect *effect = shown_as(part);
-    if (rivals_alone && effect == part->effect) continue;
+    if (certain && !certain[k] && effect == part->effect) continue;
     size_t e = effect ? find_candidate(edge_fit, to, effect, part->shape) : FG_CANDIDATES_MAX;
     if (e == FG_CANDIDATES_MAX) continue;
     one.mask |= 1u << e;
@@ -100,7 +101,8 @@ static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model
   to->total = to->count;
 }
 
-/* A named effect beside a rival is not found: without it the rivals are an explanation, too. */
+/* A named effect beside a rival is not found, unless it is certain: without it the rivals are an
+ * explanation, too. */
 static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v,
                         fg_explanations *to) {
   to->count = to->total = 0;
@@ -112,9 +114,9 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
     return;
   }
   for (size_t k = 0; k < v->ties; k++)
-    add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score, false, to);
+    add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score, NULL, to);
   if (v->outcome == FG_EVIDENCE_UNATTRIBUTED && v->tie[0].named)
-    add_explanation(edge_fit, &v->tie[0], v->middle_mm[0], v->tie[0].score, true, to);
+    add_explanation(edge_fit, &v->tie[0], v->middle_mm[0], v->tie[0].score, v->certain, to);
   to->p_value = fmin(to->p_value, fmax(v->p_null, DBL_MIN));
 }
 

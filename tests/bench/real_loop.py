@@ -259,7 +259,7 @@ def write_page(path, name, dpi, report, edges, image):
     y0, u_y0 = step["parameters"]["y_mm"], step["uncertainty"]["y_mm"]
     seam = int(round(y0 / pitch + 0.5))
     crossing = [d for d in report["before"]["discs"] if abs(d["centre_mm"][1] - y0) < d["radius_mm"]]
-    clean = [d["number"] for d in report["before"]["discs"] if not d["flags"]]
+    clean = [d["number"] for d in report["before"]["discs"] if "poor_fit" not in d["flags"]]
     used = [((d["centre_mm"][0] - d["radius_mm"]) / pitch - 8, (d["centre_mm"][0] + d["radius_mm"]) / pitch + 8) for d in crossing]
     hole = crossing[0]["number"]
     put_in = int(round(amplitude / 1000 / pitch))

@@ -138,8 +138,8 @@ static void put_model(fg_evidence_search *s, fg_evidence_part *part, double scor
 enum { WRITTEN = 4 };
 
 /* The verdict on models of these scores, best first; the last of them is no cause. */
-static void decide_written(const double score[WRITTEN], const char *const names[WRITTEN],
-                           fg_evidence_verdict *v) {
+static void decide_written_of(bool discs, const double score[WRITTEN],
+                              const char *const names[WRITTEN], fg_evidence_verdict *v) {
   fg_context ctx = {0};
   foil_rows f;
   fg_evidence_search s;
@@ -153,9 +153,16 @@ static void decide_written(const double score[WRITTEN], const char *const names[
   memset(part, 0, sizeof part);
   for (int m = 0; m < WRITTEN; m++)
     put_model(&s, part, score[m], names[m]);
+  f.edge_fit.discs = discs;
   assert_ok(&ctx, fg_evidence_decide(&ctx, &s, v));
+  f.edge_fit.discs = false;
   fg_evidence_search_close(&s);
   foil_rows_close(&f);
+}
+
+static void decide_written(const double score[WRITTEN], const char *const names[WRITTEN],
+                           fg_evidence_verdict *v) {
+  decide_written_of(false, score, names, v);
 }
 
 static void a_name_beside_what_has_none_must_gain_more_than_the_columns_err(void **state) {
@@ -168,6 +175,38 @@ static void a_name_beside_what_has_none_must_gain_more_than_the_columns_err(void
   assert_true(v.ties == 1 && v.tie[0].parts == 1 && !v.tie[0].named);
   decide_written((double[]){1e5, 1e5 - 40, 1e5 - 50, 0}, names, &v);
   assert_true(v.ties == 1 && v.tie[0].named == 1);
+}
+
+/* Smooth fields over x make no jump over y; a field over y may. */
+static void a_jump_stays_beside_fields_where_none_does_without_it(void **state) {
+  (void)state;
+  static const struct {
+    const char *best;
+    double without;
+    bool discs, certain;
+  } cases[] = {
+      {"scan.x.dx scan.row_step", 140, true, true},   {"scan.x.dx scan.row_step", 197, true, false},
+      {"scan.y.dy scan.row_step", 140, true, false},  {"scan.x.dx scan.shear", 140, true, false},
+      {"scan.x.dx scan.row_step", 140, false, false},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    fg_evidence_verdict v;
+    const char *const names[] = {cases[k].best, "scan.y.dx", "scan.x.dy", ""};
+    decide_written_of(cases[k].discs, (double[]){200, cases[k].without, 100, 0}, names, &v);
+    assert_int_equal(v.outcome, FG_EVIDENCE_UNATTRIBUTED);
+    if (v.certain[1] != cases[k].certain) fail_msg("case %zu", k);
+  }
+}
+
+/* Of two explanations of the same effects, the one with fewer of them stays. */
+static void one_step_is_told_before_two(void **state) {
+  (void)state;
+  fg_evidence_verdict v;
+  static const char *const names[] = {"scan.row_step scan.row_step", "scan.row_step", "scan.xy",
+                                      ""};
+  decide_written((double[]){1e3, 998, 800, 0}, names, &v);
+  assert_int_equal(v.outcome, FG_EVIDENCE_FOUND);
+  assert_true(v.ties == 1 && v.tie[0].parts == 1);
 }
 
 /* Each named cause is a chance of 3 %: of three, what has no name is as likely. A scale is none,
@@ -228,6 +267,8 @@ int main(void) {
       cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
       cmocka_unit_test(one_cause_is_not_cut_into_named_pieces),
       cmocka_unit_test(a_name_beside_what_has_none_must_gain_more_than_the_columns_err),
+      cmocka_unit_test(a_jump_stays_beside_fields_where_none_does_without_it),
+      cmocka_unit_test(one_step_is_told_before_two),
       cmocka_unit_test(three_named_causes_at_once_are_tied),
       cmocka_unit_test(what_edges_do_not_show_is_bounded_by_them),
       cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
