@@ -71,3 +71,18 @@ sed 's/true/1/' recipe.json >wrong.json
 expect 65 'allow_lossy must be true or false' "$program" lot lot --recipe wrong.json -o no
 
 exit $failed
+
+# Sharp and noisy edges: what JPEG leaves of them is no tone curve of a wider edge.
+cat >sharp.json <<'J'
+{"schema": "foilgauge/render/1", "seed": 4, "foils": [{"design": {"bump_count": 3}}],
+ "scanner": {"dpi": 4800, "blur_px": 0.77, "noise": 2.4, "background": 33.7, "contrast": 167}}
+J
+echo '{"schema": "foilgauge/design/1", "name": "three", "bump_count": 3}' >asked.json
+"$renderer" render sharp.json -o sharp.png --truth sharp_truth.json && "$to_jpeg" sharp.png sharp.jpg 85 || fail "render"
+"$program" measure --design asked.json --allow-lossy sharp.jpg -o sharp_report.json || fail "the sharp JPEG is not measured"
+checks - <<'P' || fail "a JPEG of sharp edges is measured wrongly"
+import json
+measured, truth = json.load(open("sharp_report.json"))["foils"][0]["bumps"], json.load(open("sharp_truth.json"))["bumps"]
+wrong = [1000 * (m["radius_mm"] - t["radius_mm"]) for m, t in zip(measured, truth)]
+assert max(map(abs, wrong)) < 1, wrong
+P
