@@ -82,7 +82,9 @@ typedef struct fg_edge_work {
   double level_step;  /* mean distance of the counts in use */
   bool unexplained;   /* no driver's model explains the profiles */
   bool plain;         /* counts are used as light, whatever the profiles show */
-  int round;          /* number of the round of Gauss-Newton */
+  bool fitted;        /* the segments are fitted: this work goes on from another's */
+  struct fg_edge_work *start; /* this work before a driver was sought, where gamma was 1; or NULL */
+  int round;                  /* number of the round of Gauss-Newton */
   bool again; /* second pass, stations are known: foreign pixels beside the strip are left out of
                  the shape */
 } fg_edge_work;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/select.h"
 #include "vision/edge_spread.h"
 #include "vision/edge_work.h"
@@ -167,7 +168,7 @@ static fg_status solve_again(fg_context *ctx, fg_edge_work *work, size_t *distur
 
 static fg_status measure_edges(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
   size_t disturbed;
-  FG_TRY(fg_edges_collect(ctx, work));
+  if (!work->fitted) FG_TRY(fg_edges_collect(ctx, work));
   FG_TRY(fg_edges_find_shape(ctx, work));
   FG_TRY(fg_edges_solve(ctx, work, SOLVE_ROUNDS));
   FG_TRY(fg_edges_drop_disturbed(ctx, work, &disturbed));
@@ -218,25 +219,49 @@ static void copy_plain(const fg_edge_work *work, const fg_strip *from, const dou
 /* Measures the strip once more with counts used as light. */
 static fg_status find_plain(fg_context *ctx, const fg_edge_work *model,
                             const fg_edge_options *options, fg_strip *strip) {
-  fg_edge_work work =
+  fg_edge_work fresh =
       begin_work(model->tiles, model->segmentation, model->trace, model->reference, options);
+  fg_edge_work *work = model->start ? model->start : &fresh;
   fg_strip plain = {0};
   unsigned facts = 0;
   fg_status status = FG_OK;
-  work.linear = work.plain = work.borrowed = true;
-  work.bands = model->bands;
-  FG_TRY_EXIT(allocate_work(ctx, &work));
+  work->linear = work->plain = work->borrowed = true;
+  work->bands = model->bands;
+  if (!work->fitted) FG_TRY_EXIT(allocate_work(ctx, work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, model->reference->count, sizeof *plain.stations,
                                  (void **)&plain.stations));
   plain.count = model->reference->count;
-  FG_TRY_EXIT(measure_edges(ctx, &work, &facts));
-  fill_stations(&work, options->dpi, &plain);
+  FG_TRY_EXIT(measure_edges(ctx, work, &facts));
+  fill_stations(work, options->dpi, &plain);
   FG_TRY_EXIT(fg_strip_measure_thickness(ctx, &plain));
-  copy_plain(&work, &plain, options->dpi, strip);
+  copy_plain(work, &plain, options->dpi, strip);
 exit:
-  free_work(&work);
+  if (!work->fitted) free_work(work);
   fg_strip_free(&plain);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* The two last steps, which do not need each other. */
+typedef struct last_steps {
+  const fg_edge_work *work;
+  const fg_edge_options *options;
+  fg_strip *strip;
+} last_steps;
+
+static fg_status describe_strip(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
+                                fg_strip *strip) {
+  FG_TRY(fg_picture_of_strip(ctx, work, &strip->picture));
+  strip->count = work->reference->count;
+  fill_stations(work, dpi, strip);
+  find_box(work->reference, strip);
+  fg_ends_measure(work, dpi, strip);
+  return summarise_strip(ctx, work, dpi, strip);
+}
+
+static fg_status take_last_step(fg_context *ctx, void *shared, size_t step) {
+  const last_steps *steps = shared;
+  if (step == 0) return find_plain(ctx, steps->work, steps->options, steps->strip);
+  return describe_strip(ctx, steps->work, steps->options->dpi, steps->strip);
 }
 
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
@@ -245,6 +270,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   const double *dpi = options->dpi;
   fg_reference reference = {0};
   fg_edge_work work = begin_work(tiles, segmentation, trace, &reference, options);
+  last_steps steps = {&work, options, strip};
   fg_status status = FG_OK;
   FG_TRY_EXIT(build_reference(ctx, trace, dpi, &reference));
   FG_TRY_EXIT(allocate_work(ctx, &work));
@@ -253,19 +279,17 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   strip->facts = trace->facts;
   strip->picture = fg_picture_unknown();
   FG_TRY_EXIT(measure_edges(ctx, &work, &strip->facts));
-  FG_TRY_EXIT(fg_picture_of_strip(ctx, &work, &strip->picture));
-  strip->count = reference.count;
-  fill_stations(&work, dpi, strip);
-  find_box(&reference, strip);
-  fg_ends_measure(&work, dpi, strip);
-  FG_TRY_EXIT(summarise_strip(ctx, &work, dpi, strip));
   strip->plain_mm = NAN;
-  if (work.gamma != 1 || work.driver)
-    FG_TRY_EXIT(find_plain(ctx, &work, options, strip));
-  else
+  if (work.gamma != 1 || work.driver) {
+    FG_TRY_EXIT(fg_parallel_run(ctx, options->threads, 2, take_last_step, &steps));
+  } else {
+    FG_TRY_EXIT(describe_strip(ctx, &work, dpi, strip));
     copy_plain(&work, strip, dpi, strip);
+  }
 exit:
   fg_reference_free(&reference);
+  if (work.start) free_work(work.start);
+  free(work.start);
   free_work(&work);
   if (status != FG_OK) fg_strip_free(strip);
   return status;

@@ -5,10 +5,16 @@
 #include "vision/driver_table.h"
 #include "vision/edge_work.h"
 
-enum { BLOCK_STATIONS = 8 };
+enum { BLOCK_STATIONS = 8, MARGIN_STEPS = 6 };
 
-static void mean_shape(const fg_edge_work *work, size_t first, size_t last, double *values,
-                       double *half_px) {
+/* Mean shape of neighbouring stations, as of fg_driven_profile. */
+typedef struct driven_block {
+  double values[FG_DRIVEN_VALUES], half_px;
+} driven_block;
+
+static driven_block mean_block(const fg_edge_work *work, size_t first, size_t last) {
+  driven_block block;
+  double *values = block.values;
   double sum[FG_EDGE_SHAPE_VALUES] = {0}, width = 0, n = (double)(last - first + 1), rate;
   for (size_t i = first; i <= last; i++) {
     const fg_edge_station *s = &work->stations[i];
@@ -18,9 +24,9 @@ static void mean_shape(const fg_edge_work *work, size_t first, size_t last, doub
       sum[k] += of[k] / n;
     width += (s->edge_px[1] - s->edge_px[0]) / n;
   }
-  *half_px = 0.5 * width;
-  values[FG_DRIVEN_LEFT] = -*half_px;
-  values[FG_DRIVEN_RIGHT] = *half_px;
+  block.half_px = 0.5 * width;
+  values[FG_DRIVEN_LEFT] = -block.half_px;
+  values[FG_DRIVEN_RIGHT] = block.half_px;
   values[FG_DRIVEN_PLATEAU] = fg_edges_count(work, sum[0], &rate);
   for (int side = 0; side < 2; side++) {
     double count = fg_edges_count(work, sum[0] + sum[1 + side], &rate);
@@ -29,6 +35,7 @@ static void mean_shape(const fg_edge_work *work, size_t first, size_t last, doub
     values[FG_DRIVEN_SLOPE_L + side] = sum[3 + side] * over;
     values[FG_DRIVEN_BLUR_L + side] = sum[5 + side];
   }
+  return block;
 }
 
 /* Adds a pixel, whose place is counted from the nearer edge. */
@@ -53,33 +60,64 @@ static void add_pixel(const fg_driven_table *table, double half_px, const float 
   s->used++;
 }
 
-fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t chunk,
-                              float limit) {
-  enum { BLOCKS = FG_CHUNK_STATIONS / BLOCK_STATIONS + 1 };
-  double half_px[BLOCKS], values[FG_DRIVEN_VALUES];
-  size_t first, last;
-  fg_driven_tables tables;
-  fg_edges_chunk(work, chunk, &first, &last);
-  FG_TRY(fg_driven_tables_create(ctx, BLOCKS, work->width_px + work->reach_px, &tables));
-  for (size_t i = first, k = 0; i <= last; i += BLOCK_STATIONS, k++) {
-    size_t end = i + BLOCK_STATIONS - 1 < last ? i + BLOCK_STATIONS - 1 : last;
-    mean_shape(work, i, end, values, &half_px[k]);
-    fg_driven_tables_fill(work->driver, work->driver_tone, values, false, &tables, k);
-  }
+/* Reach of a station's edges, outwards. */
+typedef struct station_reach {
+  float px[2];
+} station_reach;
+
+static void find_station_reach(const fg_edge_work *work, size_t first, size_t last,
+                               station_reach *reach) {
   double radius = work->driver->values[FG_DRIVER_RADIUS];
   if (work->driver->values[FG_DRIVER_AMOUNT] == 0) radius = 0;
-  float reach_px[FG_CHUNK_STATIONS][2],
-      outer = work->outer_px > 0 ? (float)work->outer_px : INFINITY;
+  float outer = work->outer_px > 0 ? (float)work->outer_px : INFINITY;
   for (size_t i = first; i <= last; i++)
     for (int side = 0; side < 2; side++)
-      reach_px[i - first][side] = fminf(
+      reach[i - first].px[side] = fminf(
           outer, (float)FG_REACH_BLURS * hypotf(work->stations[i].blur_px[side], (float)radius));
+}
+
+/* Reach of tables from the middle of the strip: of the farthest pixel that counts, and no more than
+ * that of the band. The places of a table do not depend on it. */
+static double table_reach(const fg_edge_work *work, const driven_block *blocks, size_t block_count,
+                          const station_reach *reach, size_t station_count) {
+  double band = work->width_px + work->reach_px, half = 0, beyond = 0;
+  for (size_t k = 0; k < block_count; k++)
+    half = fmax(half, blocks[k].half_px);
+  for (size_t i = 0; i < station_count; i++)
+    beyond = fmax(beyond, fmaxf(reach[i].px[0], reach[i].px[1]));
+  double spare = floor((band - half - beyond) / FG_DRIVEN_STEP_PX) - MARGIN_STEPS;
+  return spare > 0 ? band - spare * FG_DRIVEN_STEP_PX : band;
+}
+
+static void add_band(const fg_edge_work *work, size_t chunk, const driven_block *blocks,
+                     const fg_driven_table *tables, const station_reach *reach, float limit) {
+  size_t first, last;
+  fg_edges_chunk(work, chunk, &first, &last);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     size_t station = (size_t)band->pixels[i].station, k = (station - first) / BLOCK_STATIONS;
-    add_pixel(&tables.list[k], half_px[k], reach_px[station - first], &work->stations[station],
+    add_pixel(&tables[k], blocks[k].half_px, reach[station - first].px, &work->stations[station],
               &band->pixels[i], limit);
   }
+}
+
+fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t chunk,
+                              float limit) {
+  enum { BLOCKS = FG_CHUNK_STATIONS / BLOCK_STATIONS + 1 };
+  driven_block blocks[BLOCKS];
+  station_reach reach[FG_CHUNK_STATIONS];
+  size_t first, last, count = 0;
+  fg_driven_tables tables;
+  fg_edges_chunk(work, chunk, &first, &last);
+  find_station_reach(work, first, last, reach);
+  for (size_t i = first; i <= last; i += BLOCK_STATIONS)
+    blocks[count++] =
+        mean_block(work, i, i + BLOCK_STATIONS - 1 < last ? i + BLOCK_STATIONS - 1 : last);
+  double from_middle = table_reach(work, blocks, count, reach, last + 1 - first);
+  FG_TRY(fg_driven_tables_create(ctx, count, from_middle, &tables));
+  for (size_t k = 0; k < count; k++)
+    fg_driven_tables_fill(work->driver, work->driver_tone, blocks[k].values, false, &tables, k);
+  add_band(work, chunk, blocks, tables.list, reach, limit);
   fg_driven_tables_free(&tables);
   return FG_OK;
 }

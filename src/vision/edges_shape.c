@@ -289,12 +289,44 @@ static fg_status fit_all(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
+/* Copies a work whose segments are fitted, for counts used as light: work->start. */
+static fg_status keep_start(fg_context *ctx, const fg_edge_work *before, fg_edge_work *work) {
+  size_t count = before->reference->count, bins = before->segment_count * before->bin_count;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->start, (void **)&work->start));
+  fg_edge_work *start = work->start;
+  *start = *before;
+  start->fitted = start->borrowed = true;
+  start->stations = NULL;
+  start->segments = NULL;
+  start->bins = NULL;
+  start->tables = NULL;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *start->stations, (void **)&start->stations));
+  FG_TRY(allocate_segments(ctx, start));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *start->tables, (void **)&start->tables));
+  fg_edge_tables_init(start->tables, 1);
+  memcpy(start->stations, before->stations, count * sizeof *start->stations);
+  memcpy(start->bins, before->bins, bins * sizeof *start->bins);
+  for (size_t i = 0; i < start->segment_count; i++) {
+    fg_profile_bin *own = start->segments[i].bins;
+    start->segments[i] = before->segments[i];
+    start->segments[i].bins = own;
+  }
+  return FG_OK;
+}
+
+static fg_status find_driver(fg_context *ctx, fg_edge_work *work, bool *found) {
+  const fg_edge_work before = *work;
+  FG_TRY(fg_edges_find_driver(ctx, work, found));
+  bool plain_differs = work->gamma != 1 || work->driver;
+  return before.gamma == 1 && plain_differs ? keep_start(ctx, &before, work) : FG_OK;
+}
+
 static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
   bool found = false;
   FG_TRY(fit_all(ctx, work));
   if (!work->again) FG_TRY(fg_edges_find_walls(ctx, work));
   if (!work->again && work->outer_px > 0) FG_TRY(fit_all(ctx, work));
-  if (!work->again && !work->plain) FG_TRY(fg_edges_find_driver(ctx, work, &found));
+  if (!work->again && !work->plain) FG_TRY(find_driver(ctx, work, &found));
   if (found) FG_TRY(fit_all(ctx, work));
   return fg_edges_smooth_shape(ctx, work, true);
 }
@@ -308,6 +340,7 @@ fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work) {
 }
 
 fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work) {
+  if (work->fitted) return fg_edges_smooth_shape(ctx, work, true);
   FG_TRY(allocate_segments(ctx, work));
   FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
   FG_TRY(find_gamma(ctx, work));
