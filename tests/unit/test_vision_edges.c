@@ -218,6 +218,21 @@ static void edges_beside_a_wall_are_on_the_truth(void **state) {
   }
 }
 
+/* Used as light, counts beside a halo show lower steps and wider blurs than the model, but about
+ * the same width. */
+static void a_width_without_a_model_is_that_of_the_truth(void **state) {
+  (void)state;
+  measured m = measure_scanner("\"blur_px\":2.1,\"noise\":1,"
+                               "\"rough\":{\"halo\":{\"fraction\":0.15,\"length_px\":8}}");
+  const fg_strip *strip = &m.result.foils[0].strip;
+  double px_um = 25400 / m.result.dpi[0];
+  assert_near(strip->blur_left_um / px_um, blur_seen(2.1), 0.03);
+  assert_near(strip->plain_blur_um / px_um, blur_seen(2.1) + 0.1, 0.05);
+  assert_true(strip->plain_counts < 0.97 * 255 * strip->contrast);
+  assert_near(strip->plain_mm * 1000, 100, 0.5);
+  measured_free(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(edges_are_on_the_truth),
@@ -226,6 +241,7 @@ int main(void) {
       cmocka_unit_test(clipping_is_flagged),
       cmocka_unit_test(a_side_wall_is_flagged),
       cmocka_unit_test(edges_beside_a_wall_are_on_the_truth),
+      cmocka_unit_test(a_width_without_a_model_is_that_of_the_truth),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
