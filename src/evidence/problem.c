@@ -61,7 +61,8 @@ static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
   double linear2 = LINEARITY_SHARE * LINEARITY_SHARE * (weight > 0 ? square / weight : 0);
   double alike = fmax(1, sqrt(M_PI) * ERROR_LENGTH_MM / row_spacing_mm(p));
   double integral = s->share > 0 ? s->integral : 1;
-  double error2 = (EDGE_ERROR_UM * EDGE_ERROR_UM + linear2) * alike;
+  p->error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + linear2);
+  double error2 = p->error_um * p->error_um * alike;
   p->noise_um = sqrt(s->row_um * s->row_um * integral * fmax(1, s->swell) + error2);
   p->large = linear2 * alike > LARGE_SHARE * p->noise_um * p->noise_um;
 }

@@ -21,6 +21,7 @@ typedef struct fg_evidence_problem {
   size_t rows, *row; /* rows in use */
   fg_whitening whitening;
   double noise_um; /* standard deviation of a whitened smooth value */
+  double error_um; /* known to be left on the edge by its model and linear columns, smooth */
   bool large;      /* the residual is so large that linear columns err */
   double *basis;   /* owned; rank × rows: flat directions of the geometry, orthonormal */
   fg_evidence_span *basis_span, *span; /* owned; of the basis, of the columns */

@@ -256,10 +256,10 @@ static void find_certain(const fg_evidence_search *s, double margin, fg_evidence
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
  * share of the evidence. What leads it by less is no rival; what follows it closely is. */
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence_verdict *v) {
-  *v = (fg_evidence_verdict){.outcome = FG_EVIDENCE_CLEAN, .p_null = probability_of_none(s)};
-  double top = s->models[0].score, named;
+  double top = s->models[0].score, margin = fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top), named;
+  *v = (fg_evidence_verdict){
+      .outcome = FG_EVIDENCE_CLEAN, .p_null = probability_of_none(s), .margin = margin};
   if (v->p_null > CLEAN_P || !s->models[0].parts) return FG_OK;
-  double margin = fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top);
   FG_TRY(find_best_named(ctx, s, margin, &named));
   const tie_range range = choose_range(s, named, margin);
   FG_TRY(list_ties(ctx, s, &range, v));

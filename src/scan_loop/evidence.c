@@ -302,6 +302,8 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, &search));
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
   loop->misfit = is_split_open(&verdict) || (!loop->edge_fit.discs && leaves_more(loop, &verdict));
+  loop->edge_error_um = search.problem.error_um;
+  loop->margin = verdict.margin;
   loop->beside_foil_field = is_beside_foil_field(&loop->edge_fit, &verdict);
   FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));

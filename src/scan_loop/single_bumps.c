@@ -149,8 +149,22 @@ static double square_about_mean(const amplitudes *list, size_t count, int order)
   return sum;
 }
 
-/* Probability that nothing of single bumps is there. */
-static double find_p(const amplitudes *list, size_t count, uint64_t seed) {
+static double mean_root_weight(const amplitudes *list, size_t count, int order) {
+  double sum = 0;
+  for (size_t k = 0; k < count; k++)
+    sum += sqrt(list[k].weight[order]) / (double)count;
+  return sum;
+}
+
+/* Returns the smallest deviation of a bump, um, that is more than the error of its edge's model may
+ * do: the error is smooth, so that lower polynomials have more of it than those that are noise. The
+ * largest of many is larger by chance. */
+static double min_deviation_um(const fg_scan_loop *loop, size_t count) {
+  return loop->edge_error_um * sqrt(2 * (loop->margin + log(JUDGED * (double)count)));
+}
+
+/* Probability that nothing of single bumps is there. `min_um`: a smaller deviation is nothing. */
+static double find_p(const amplitudes *list, size_t count, uint64_t seed, double min_um) {
   fg_bump_values at = {.n = count, .noise_dof = NOISE * (double)(count - 1)};
   double min = 1;
   for (int order = CIRCLE + JUDGED; order < ORDERS; order++)
@@ -161,8 +175,9 @@ static double find_p(const amplitudes *list, size_t count, uint64_t seed) {
       at.number[k] = list[k].number;
       at.value[k] = standard(&list[k], order);
     }
-    fg_bump_pattern_find(&at, seed, &p_value);
-    min = fmin(min, JUDGED * p_value);
+    const fg_bump_pattern pattern = fg_bump_pattern_find(&at, seed, &p_value);
+    double limit = min_um * mean_root_weight(list, count, order);
+    if (fabs(pattern.by) >= limit) min = fmin(min, JUDGED * p_value);
   }
   return min;
 }
@@ -196,6 +211,6 @@ fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
   if (candidate == explanations->candidate_count) return FG_OK;
   FG_TRY(collect_amplitudes(ctx, loop, list, &count));
   if (count < FG_BUMP_PATTERN_MIN) return FG_OK;
-  double p_value = find_p(list, count, loop->options.seed);
+  double p_value = find_p(list, count, loop->options.seed, min_deviation_um(loop, count));
   return p_value < FG_BUMP_PATTERN_P ? join_curve(ctx, loop, candidate, p_value) : FG_OK;
 }

@@ -31,8 +31,10 @@ struct fg_scan_loop {
   fg_effect_set set;                        /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of the edge fit */
   fg_scan_loop_error error_before, error_after;
-  fg_cross_fit cross_fit; /* no folds: scans are held out, or no effect was found */
-  bool by_evidence;       /* evidence decided: the correction is its mean over all models */
+  fg_cross_fit cross_fit;       /* no folds: scans are held out, or no effect was found */
+  bool by_evidence;             /* evidence decided: the correction is its mean over all models */
+  double edge_error_um, margin; /* by evidence: error of the edge's model, and the gain over it, ln,
+                                   from which a deviation counts; 0: none */
   bool misfit; /* no model follows all of the residual, or the foil alone may be the cause */
   bool beside_foil_field; /* one scan: the scanner's share is seen beside a free form of the foil */
   bool scanner_is_suspect;                  /* an explanation holds what a scanner does */

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values over the bumps' numbers: some stand apart, some follow a cycle, and of scatter alone
- * neither is told; with and without noise that is known from elsewhere. */
+ * neither is told; with and without noise that is known from elsewhere. On a foil, what the error
+ * of the edge's model may do is no deviation. */
 #include <math.h>
 
+#include "effect/midline.h"
 #include "scan_loop/bump_pattern.h"
+#include "scan_loop/state.h"
+#include "support/foil_rows.h"
 #include "support/test.h"
 #include "table_loop/engine_random.h"
 
@@ -72,11 +76,48 @@ static void scatter_is_not_told(void **state) {
   }
 }
 
+/* Returns true when bump 5, raised by so much at its middle on nearly perfect edges, is told beside
+ * an error of the edge's model, and a margin, ln, over it. */
+static bool is_raised_bump_told(double raised_um, double error_um, double margin) {
+  fg_context ctx = {0};
+  foil_rows f;
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, 0.003);
+  for (size_t i = 0; i < f.edge_fit.row_count; i++) {
+    double legendre[2];
+    if (f.edge_fit.rows[i].bump != 5) continue;
+    fg_midline_legendre(&f.edge_fit.rows[i], 3, 1, 2, legendre);
+    f.residual_um[i] += raised_um * legendre[1];
+  }
+  struct fg_scan_loop loop = {.edge_fit = f.edge_fit,
+                              .residual_after = f.residual_um,
+                              .edge_error_um = error_um,
+                              .margin = margin};
+  const fg_effect *curve = fg_effect_find("free.bump.index");
+  loop.explanations = (fg_explanations){.right = true, .count = 1, .candidate_count = 1};
+  loop.explanations.candidates[0] = (fg_candidate){.kind = curve, .columns = FG_FIELD_COLUMNS};
+  assert_ok(&ctx, fg_scan_loop_find_single_bumps(&ctx, &loop));
+  f.edge_fit = loop.edge_fit;
+  foil_rows_close(&f);
+  return loop.set.count == 1 && loop.set.effects[0].kind == curve;
+}
+
+/* However plain it stands out of the noise; the margin grows with the whole evidence. */
+static void error_of_the_edge_model_is_no_bump(void **state) {
+  (void)state;
+  assert_true(is_raised_bump_told(0.06, 0, 0)); /* evidence did not decide: no error is known */
+  assert_false(is_raised_bump_told(0.06, 0.02, 5));
+  assert_true(is_raised_bump_told(0.2, 0.02, 5));
+  assert_false(is_raised_bump_told(0.2, 0.02, 300));
+  assert_true(is_raised_bump_told(2, 0.02, 300));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(known_noise_tells_few),
       cmocka_unit_test(two_of_six_are_told),
       cmocka_unit_test(scatter_is_not_told),
+      cmocka_unit_test(error_of_the_edge_model_is_no_bump),
   };
   return cmocka_run_group_tests_name("single bumps", tests, NULL, NULL);
 }
