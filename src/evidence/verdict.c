@@ -88,7 +88,6 @@ static bool holds_or_extends(const fg_evidence_model *model, const fg_effect *ef
 }
 
 bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other) {
-  if (model->parts < other->parts) return false; /* the other one holds an effect twice */
   for (size_t k = 0; k < other->parts; k++) {
     const fg_evidence_part *part = other->part[k];
     if (part->effect ? !holds_or_extends(model, part->effect) : !holds_rival_of(model, part))
@@ -121,6 +120,15 @@ static bool is_in_range(const fg_evidence_model *model, const tie_range *range) 
   return !range->nameless || (!model->named && model->parts <= range->nameless->parts);
 }
 
+/* Returns true for a model of all causes of another and some more; on discs also for one of the
+ * same causes of which one is there twice. */
+static bool is_more(const fg_evidence_search *s, const fg_evidence_model *model,
+                    const fg_evidence_model *other) {
+  return fg_evidence_includes(model, other) &&
+         (!fg_evidence_includes(other, model) ||
+          (s->problem.edge_fit->discs && model->parts > other->parts));
+}
+
 /* Lists the models of a range that include no other one of them. */
 static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_range *range,
                            fg_evidence_verdict *v) {
@@ -130,7 +138,8 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_ran
     if (model->score < range->floor) break; /* sorted */
     if (!is_in_range(model, range)) continue;
     for (size_t k = 0; k < v->ties && !more; k++)
-      more = fg_evidence_includes(model, &v->tie[k]);
+      more = fg_evidence_includes(model, &v->tie[k]) &&
+             !(s->problem.edge_fit->discs && model->parts < v->tie[k].parts);
     if (more) continue;
     FG_TRY(bears_names(ctx, s, model, v->middle_mm[v->ties], &bears));
     if (bears) v->tie[v->ties++] = *model;
@@ -140,8 +149,7 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_ran
   for (size_t k = 0; k < v->ties; k++) {
     bool more = false;
     for (size_t i = 0; i < v->ties && !more; i++)
-      more = i != k && fg_evidence_includes(&v->tie[k], &v->tie[i]) &&
-             !fg_evidence_includes(&v->tie[i], &v->tie[k]);
+      more = i != k && is_more(s, &v->tie[k], &v->tie[i]);
     if (more) continue;
     for (size_t i = 0; i < FG_EVIDENCE_PARTS; i++)
       v->middle_mm[kept][i] = v->middle_mm[k][i];

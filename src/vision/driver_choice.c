@@ -98,13 +98,11 @@ static double count_free(unsigned free) {
   return n;
 }
 
-/* Score of a model beside others of up to `cells` cells. The pooled misfit stands for cells /
- * CELLS_TOGETHER independent ones; its own chance stays in it, so that a model gains nothing below
- * the noise. Narrower edges have fewer cells: beyond them is noise, whatever the model. */
-static double score_of(const fg_driver_misfit *misfit, unsigned free, double cells) {
-  double n = cells / CELLS_TOGETHER;
-  double noise = 2 * (cells - misfit->cells) * misfit->expected / fmax(misfit->cells, 1);
-  return n * log((misfit->squares + misfit->expected + noise) / n) + count_free(free) * log(n);
+/* Score of a model. The pooled misfit stands for `misfit->cells / CELLS_TOGETHER` independent
+ * cells; its own chance stays in it, so that a model gains nothing below the noise. */
+static double score_of(const fg_driver_misfit *misfit, unsigned free) {
+  double n = misfit->cells / CELLS_TOGETHER;
+  return n * log((misfit->squares + misfit->expected) / n) + count_free(free) * log(n);
 }
 
 /* Starts a model from the better of its simpler ones, with its own values added. */
@@ -151,7 +149,7 @@ static fg_status try_family(fg_context *ctx, void *shared, size_t item) {
   start_family(family, w->candidates, start, c);
   FG_TRY_EXIT(fg_driver_fit_profiles(ctx, c->profiles, w->count, &c->fit));
   fg_driver_find_misfit(c->profiles, w->count, &c->fit.driver, scratch, &c->misfit);
-  c->score = c->fit.good ? score_of(&c->misfit, family->free, c->misfit.cells) : INFINITY;
+  c->score = c->fit.good ? score_of(&c->misfit, family->free) : INFINITY;
 exit:
   fg_driver_scratch_free(scratch);
   return status;
@@ -174,14 +172,14 @@ static fg_status try_stage(fg_context *ctx, unsigned threads, int stage, wave *w
   return FG_OK;
 }
 
-/* Scores all models on as many cells as the one with most of them has. */
-static void score_alike(candidate *candidates) {
-  double cells = 0;
-  for (size_t i = 0; i < FAMILIES; i++)
-    if (candidates[i].fit.good) cells = fmax(cells, candidates[i].misfit.cells);
-  for (size_t i = 0; i < FAMILIES; i++)
-    if (candidates[i].fit.good)
-      candidates[i].score = score_of(&candidates[i].misfit, families[i].free, cells);
+/* Models from `first` on that miss by more than a simpler one before them are out: those of wider
+ * edges have more cells, and would lead by their number. */
+static void leave_out_worse(candidate *candidates, size_t first, size_t last) {
+  double rms = INFINITY;
+  for (size_t i = 0; i < first; i++)
+    if (candidates[i].fit.good) rms = fmin(rms, candidates[i].misfit.rms);
+  for (size_t i = first; i < last; i++)
+    if (!(candidates[i].misfit.rms < rms)) candidates[i].score = INFINITY;
 }
 
 /* Returns the best model, and the edges' place over all models, each weighing exp(-score/2). Where
@@ -228,8 +226,9 @@ fg_status fg_driver_choose(fg_context *ctx, fg_driven_profile *profiles, size_t 
   size_t best = 0;
   choice->missed = true;
   for (int stage = 0; stage < STAGES && choice->missed; stage++) {
+    size_t first = w.last;
     FG_TRY_EXIT(try_stage(ctx, choice->threads, stage, &w));
-    score_alike(candidates);
+    leave_out_worse(candidates, first, w.last);
     best = weigh_models(candidates, stage == STAGES - 1 ? VALLEY_SHARPNESS : 1, &choice->u_edge_px);
     choice->missed = fg_driver_is_missed(&candidates[best].misfit, ends[1] - ends[0]);
   }

@@ -198,13 +198,13 @@ static void a_jump_stays_beside_fields_where_none_does_without_it(void **state) 
   }
 }
 
-/* Of two explanations of the same effects, the one with fewer of them stays. */
+/* Of two explanations of discs by the same effects, the one with fewer of them stays. */
 static void one_step_is_told_before_two(void **state) {
   (void)state;
   fg_evidence_verdict v;
   static const char *const names[] = {"scan.row_step scan.row_step", "scan.row_step", "scan.xy",
                                       ""};
-  decide_written((double[]){1e3, 998, 800, 0}, names, &v);
+  decide_written_of(true, (double[]){1e3, 998, 800, 0}, names, &v);
   assert_int_equal(v.outcome, FG_EVIDENCE_FOUND);
   assert_true(v.ties == 1 && v.tie[0].parts == 1);
 }
