@@ -133,10 +133,16 @@ static bool same_kinds(const fg_effect_set *a, const fg_effect_set *b) {
   return true;
 }
 
-static bool is_finite_fit(const fg_edge_fit *edge_fit, const double *residual_um) {
-  for (size_t i = 0; i < edge_fit->row_count; i++)
-    if (!isfinite(residual_um[i])) return false;
-  return true;
+/* Returns true where a fit leaves less than no effect does: sets that the rows hardly tell apart
+ * may not converge. */
+static bool has_converged(const fg_scan_loop *loop) {
+  double before = 0, after = 0;
+  for (size_t i = 0; i < loop->edge_fit.row_count; i++) {
+    double weight = loop->edge_fit.rows[i].weight;
+    before += weight * loop->residual_before[i] * loop->residual_before[i];
+    after += weight * loop->residual_after[i] * loop->residual_after[i];
+  }
+  return after <= before; /* false for NaN */
 }
 
 /* Fits the likeliest explanation; the explanations so far stay where it cannot be fitted. */
@@ -156,8 +162,7 @@ static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evid
   FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
   fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
   fg_status status = fg_joint_fit(ctx, &loop->edge_fit, &set, loop->residual_after);
-  if (status == FG_OK && !is_finite_fit(&loop->edge_fit, loop->residual_after))
-    status = FG_ERR_NUMERIC;
+  if (status == FG_OK && !has_converged(loop)) status = FG_ERR_NUMERIC;
   if (status == FG_OK) {
     loop->set = set;
     loop->explanations = next;
