@@ -261,11 +261,7 @@ static size_t numbers_of_disc(const fg_edge_fit *edge_fit) {
 static size_t over_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row, double *values) {
   size_t each = numbers_of_disc(edge_fit), count = each * edge_fit->part_count;
   memset(values, 0, count * sizeof *values);
-  for (size_t c = 0; c < each; c += 2) {
-    double angle = (double)(c / 2 + 2) * M_PI * row->phi;
-    values[each * row->part + c] = cos(angle);
-    values[each * row->part + c + 1] = sin(angle);
-  }
+  if (each) harmonics(M_PI * row->phi, DIRECTION_LAST, 1, values + each * row->part);
   return count;
 }
 

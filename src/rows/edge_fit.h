@@ -178,6 +178,9 @@ static inline double fg_edge_fit_along_bumps(const fg_edge_fit_row *row) {
 double fg_edge_fit_integral(const fg_edge_fit *edge_fit, const size_t *row, size_t count,
                             const double *value);
 
+/* Returns the sum of squares of residuals, each by its row's weight. */
+double fg_edge_fit_weighted_square(const fg_edge_fit *edge_fit, const double *residual);
+
 /* Fits the geometry under a correction by least squares, Gauss-Newton to convergence. */
 fg_status fg_edge_fit_fit(fg_context *ctx, fg_edge_fit *edge_fit,
                           const fg_edge_fit_correction *correction);

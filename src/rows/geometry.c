@@ -192,7 +192,7 @@ static fg_status solve_step(fg_context *ctx, const fg_edge_fit *edge_fit, const 
   return FG_OK;
 }
 
-static double weighted_square(const fg_edge_fit *edge_fit, const double *residual) {
+double fg_edge_fit_weighted_square(const fg_edge_fit *edge_fit, const double *residual) {
   double sum = 0;
   for (size_t i = 0; i < edge_fit->row_count; i++)
     sum += edge_fit->rows[i].weight * residual[i] * residual[i];
@@ -220,13 +220,13 @@ fg_status fg_edge_fit_fit(fg_context *ctx, fg_edge_fit *edge_fit,
   }
   for (int round = 0; round < FIT_ROUNDS; round++) {
     fg_edge_fit_residual(edge_fit, correction, residual, jacobian);
-    if (round == 0) square = weighted_square(edge_fit, residual);
+    if (round == 0) square = fg_edge_fit_weighted_square(edge_fit, residual);
     FG_TRY_EXIT(solve_step(ctx, edge_fit, residual, jacobian, normal, step));
     move_geometry(edge_fit, step);
     if (gsl_vector_max(step) < STEP_END && gsl_vector_min(step) > -STEP_END) break;
   }
   fg_edge_fit_residual(edge_fit, correction, residual, NULL);
-  if (!(weighted_square(edge_fit, residual) <=
+  if (!(fg_edge_fit_weighted_square(edge_fit, residual) <=
         square * (1 + ROUNDING))) { /* rows too few to lead anywhere */
     fg_edge_fit_geometry_load(edge_fit, start);
     fg_edge_fit_residual(edge_fit, correction, residual, NULL);

@@ -136,13 +136,9 @@ static bool same_kinds(const fg_effect_set *a, const fg_effect_set *b) {
 /* Returns true where a fit leaves less than no effect does: sets that the rows hardly tell apart
  * may not converge. */
 static bool has_converged(const fg_scan_loop *loop) {
-  double before = 0, after = 0;
-  for (size_t i = 0; i < loop->edge_fit.row_count; i++) {
-    double weight = loop->edge_fit.rows[i].weight;
-    before += weight * loop->residual_before[i] * loop->residual_before[i];
-    after += weight * loop->residual_after[i] * loop->residual_after[i];
-  }
-  return after <= before; /* false for NaN */
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  return fg_edge_fit_weighted_square(edge_fit, loop->residual_after) <=
+         fg_edge_fit_weighted_square(edge_fit, loop->residual_before); /* false for NaN */
 }
 
 /* Fits the likeliest explanation; the explanations so far stay where it cannot be fitted. */

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "core/small_solve.h"
 #include "vision/driver_places.h"
 
@@ -114,19 +115,6 @@ static double weight_of(const fg_driven_profile *p, size_t i, double noise) {
   return 1 / (noise * noise / b->count + tails * tails);
 }
 
-/* Four sums side by side, for vectors. */
-__attribute__((target_clones("avx2", "default"))) static double
-multiply_columns(const double *restrict a, const double *restrict b, size_t count) {
-  double sum[4] = {0};
-  size_t i = 0;
-  for (; i + 4 <= count; i += 4)
-    for (size_t k = 0; k < 4; k++)
-      sum[k] += a[i + k] * b[i + k];
-  for (; i < count; i++)
-    sum[0] += a[i] * b[i];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
 /* Turns the first column from the model's counts to residuals, and fills the weights; returns the
  * weighted squares. */
 static double weigh_residuals(const solver *s, const fg_driven_profile *p, double *weights) {
@@ -151,7 +139,7 @@ static double add_profile(const solver *s, const fg_driven_profile *p, profile_e
     for (size_t i = 0; i < p->count; i++)
       weighted[i] = weights[i] * column[i];
     for (size_t j = 0; j <= k; j++) {
-      double product = multiply_columns(weighted, derivative_column(s, 1 + j), p->count);
+      double product = fg_dot_in_lanes(weighted, derivative_column(s, 1 + j), p->count);
       if (own)
         part->system.matrix[k][j] = product;
       else if (j < FG_DRIVEN_VALUES)
@@ -159,7 +147,7 @@ static double add_profile(const solver *s, const fg_driven_profile *p, profile_e
       else
         part->common[common][j - FG_DRIVEN_VALUES] = product;
     }
-    double right = multiply_columns(weighted, derivative_column(s, 0), p->count);
+    double right = fg_dot_in_lanes(weighted, derivative_column(s, 0), p->count);
     *(own ? &part->system.right[k] : &part->right[common]) = right;
   }
   part->system.sum_squares = squares;

@@ -92,6 +92,9 @@ typedef struct fg_edge_work {
 /* Stations [*first, *last] of a chunk. edges_pixels.c */
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last);
 
+/* Returns the background's count at a station. edges_pixels.c */
+float fg_edges_background(const fg_edge_work *work, const fg_reference_station *station);
+
 /* Collects the pixels of all chunks, and the middle of each station, smoothed over its neighbours.
  * edges_pixels.c */
 fg_status fg_edges_collect(fg_context *ctx, fg_edge_work *work);

@@ -13,12 +13,10 @@ void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_
   if (*last >= work->reference->count) *last = work->reference->count - 1;
 }
 
-/* Background count at a station. */
-static float background_at(const fg_edge_work *work, size_t station) {
+float fg_edges_background(const fg_edge_work *work, const fg_reference_station *station) {
   const fg_segmentation *seg = work->segmentation;
-  const fg_reference_station *r = &work->reference->stations[station];
-  double bx = fmin(fmax(r->x / FG_BLOCK_PX, 0), seg->tiles->block_columns - 1);
-  double by = fmin(fmax(r->y / FG_BLOCK_PX, 0), seg->tiles->block_rows - 1);
+  double bx = fmin(fmax(station->x / FG_BLOCK_PX, 0), seg->tiles->block_columns - 1);
+  double by = fmin(fmax(station->y / FG_BLOCK_PX, 0), seg->tiles->block_rows - 1);
   return fg_segmentation_background(seg, (int32_t)bx, (int32_t)by);
 }
 
@@ -31,7 +29,8 @@ static void weigh_pixels(const fg_edge_work *work, size_t chunk) {
   size_t first, last;
   fg_edges_chunk(work, chunk, &first, &last);
   for (size_t i = first; i <= last; i++)
-    work->stations[i].plateau = background_at(work, i); /* until the plateau is known */
+    work->stations[i].plateau =
+        fg_edges_background(work, &work->reference->stations[i]); /* until the plateau is known */
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];
     if (fabsf(p->across_px) > reach) continue;

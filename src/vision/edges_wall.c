@@ -36,12 +36,7 @@ static double band_share(const fg_edge_work *work, size_t segment, int side) {
     sum += b->count * b->value;
     weight += b->count;
   }
-  const fg_reference_station *r = &work->reference->stations[station];
-  const fg_tiles *tiles = work->tiles;
-  double column = fmin(fmax(r->x / FG_BLOCK_PX, 0), tiles->block_columns - 1);
-  double row = fmin(fmax(r->y / FG_BLOCK_PX, 0), tiles->block_rows - 1);
-  double background =
-      (double)fg_segmentation_background(work->segmentation, (int32_t)column, (int32_t)row);
+  double background = (double)fg_edges_background(work, &work->reference->stations[station]);
   double plateau = fg_edges_count(work, fmax(s->fit.shape.plateau, 1e-3), &rate);
   return weight > 0 ? (sum / weight - background) / (plateau - background) : NAN;
 }

@@ -14,13 +14,6 @@ enum { PIXEL_STEP = 5, TILES_MAX = 12 };
 #define OUTER_PX      2.5
 #define CLIPPED_NOISE 1.0
 
-static double background_at(const fg_edge_work *work, const fg_reference_station *r) {
-  const fg_segmentation *seg = work->segmentation;
-  double x = fmin(fmax(r->x / FG_BLOCK_PX, 0), seg->tiles->block_columns - 1);
-  double y = fmin(fmax(r->y / FG_BLOCK_PX, 0), seg->tiles->block_rows - 1);
-  return (double)fg_segmentation_background(seg, (int32_t)x, (int32_t)y);
-}
-
 /* Makes the profiles of both edges of one segment; returns their number. */
 static size_t make_profiles(const fg_edge_work *work, size_t i, fg_edge_profile *profiles) {
   const fg_segment_profile *s = &work->segments[i];
@@ -36,7 +29,7 @@ static size_t make_profiles(const fg_edge_work *work, size_t i, fg_edge_profile 
                                       .reach_px = OUTER_PX,
                                       .bearing = atan2(way * r->tx, -way * r->ty),
                                       .blur_px = s->fit.good ? s->fit.shape.blur_px[side] : NAN,
-                                      .background = background_at(work, r)};
+                                      .background = (double)fg_edges_background(work, r)};
     n += fg_edge_profile_make(&source, &profiles[n]);
   }
   return n;
@@ -106,7 +99,7 @@ static void choose_along(const fg_edge_work *work, fg_tile_choice *choice) {
 static double find_shading(const fg_edge_work *work, double contrast) {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < work->reference->count; i += FG_SEGMENT_STATIONS) {
-    double at = background_at(work, &work->reference->stations[i]);
+    double at = (double)fg_edges_background(work, &work->reference->stations[i]);
     low = fmin(low, at);
     high = fmax(high, at);
   }
@@ -153,7 +146,7 @@ static fg_edge_band band_of(const fg_edge_work *work, const band_sums *b, size_t
   if (station >= work->reference->count) station = work->reference->count - 1;
   const fg_reference_station *r = &work->reference->stations[station];
   int way = at % 2 ? 1 : -1;
-  double background = background_at(work, r);
+  double background = (double)fg_edges_background(work, r);
   return (fg_edge_band){
       .bearing = atan2(way * r->tx, -way * r->ty),
       .share = b->counts[at] > 0
