@@ -24,6 +24,8 @@ CURVES = [
     ("scan.x", "y"), ("scan.y", "x"),
 ]  # fmt: skip
 
+MOST_AT_START_UM = 450  # an effect of the carriage's start that is larger at the scan's edge is refused by `render`
+
 # The built-in Gen II design comes every second time.
 GEN2 = {
     "form": "classical", "bump_count": 9, "bump_radius_mm": 3.32, "bump_angle_deg": 63.15,
@@ -134,7 +136,8 @@ def draw_effect(rng, kind, half_mm, ranges_mm, size=None):
     elif kind == "scan.row_step":
         effect.update(amplitude_um=sign * size, y_mm=draw_place(rng, *ranges_mm[1]))
     elif kind == "scan.carriage_start":  # its size is told where the foil begins
-        length, y = log_uniform(rng, 2, 12), ranges_mm[1][0]
+        y = ranges_mm[1][0]
+        length = max(log_uniform(rng, 2, 12), y / math.log(MOST_AT_START_UM / size))
         effect.update(amplitude_um=sign * size * math.exp(y / length), length_mm=length)
     elif kind == "scan.column_step":
         effect.update(amplitude_um=sign * size, x_mm=draw_place(rng, *ranges_mm[0]))
