@@ -202,6 +202,46 @@ fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *s,
   return refine_place(ctx, s, factor, &range, part, evidence);
 }
 
+static size_t find_nearest_start(const fg_edge_fit *edge_fit, const fg_effect *effect,
+                                 double shape) {
+  size_t nearest = 0;
+  double closest = INFINITY;
+  for (size_t i = 0; i < effect->starts; i++) {
+    double distance = fabs(effect->start(&edge_fit->frame, i, effect->starts) - shape);
+    if (distance >= closest) continue;
+    closest = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+static bool has_one_place(const fg_effect *effect) {
+  return effect->starts && !effect->grid && effect->shapes == 1;
+}
+
+fg_status fg_evidence_refit_effect(fg_context *ctx, fg_evidence_search *s,
+                                   const fg_evidence_factor *factor, fg_evidence_part *part,
+                                   double *evidence) {
+  const fg_edge_fit *edge_fit = s->problem.edge_fit;
+  const double at = part->shape[0], log_prior = part->log_prior;
+  shape_range range;
+  hit found;
+  set_size(s, part, 0);
+  FG_TRY(score_option(ctx, s, factor, &(fg_evidence_sets){part->first, 1, part->count},
+                      part->variance, &found));
+  set_size(s, part, found.size);
+  *evidence = found.evidence;
+  if (!has_one_place(part->effect)) return FG_OK;
+  find_range(edge_fit, part->effect, find_nearest_start(edge_fit, part->effect, at), part, &range);
+  double reach = 0.25 * (range.high[0] - range.low[0]);
+  part->shape[0] = at;
+  range.low[0] = at - reach;
+  range.high[0] = at + reach;
+  fg_status status = refine_place(ctx, s, factor, &range, part, evidence);
+  part->log_prior = log_prior;
+  return status;
+}
+
 fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *s,
                                 const fg_evidence_factor *factor, const fg_evidence_option *option,
                                 fg_evidence_part *part, double *evidence) {

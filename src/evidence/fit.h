@@ -12,6 +12,11 @@ fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *search,
 fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *search,
                                 const fg_evidence_factor *factor, const fg_evidence_option *option,
                                 fg_evidence_part *part, double *evidence);
+/* Finds the size of an effect anew beside the factor's model, which does not hold it, and, where it
+ * starts from a grid of one number, its place; `evidence` is that of both together. */
+fg_status fg_evidence_refit_effect(fg_context *ctx, fg_evidence_search *search,
+                                   const fg_evidence_factor *factor, fg_evidence_part *part,
+                                   double *evidence);
 
 /* Amplitudes that are tried of a rival: number i, um. */
 enum { FG_EVIDENCE_AMPLITUDES = 11 };

@@ -33,8 +33,8 @@ typedef struct fg_rival {
 /* The rows; NULL-terminated by name. */
 extern const fg_rival fg_rivals[];
 
-/* Returns false on discs for rivals of foils: the forms that discs have alike are noise, that of one
- * disc alone is a rival. */
+/* Returns false on discs for rivals of foils: the forms that discs have alike are noise, that of
+ * one disc alone is a rival. */
 bool fg_rival_shows(const fg_rival *rival, const fg_edge_fit *edge_fit);
 
 /* Fills all columns of one row, um along its normal per unit; returns their number. What moves the

@@ -7,15 +7,16 @@
 
 #include "core/memory.h"
 #include "evidence/fit.h"
+#include "evidence/refit.h"
 #include "evidence/unnamed.h"
 
 /* Models that are extended in a round: of named effects alone, and with rivals if they are no
  * further than REACH from the best. */
 enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 2, ROUNDS = 4 };
 #define REACH 60.0
-/* The likeliest models, of which every part is left out in turn; models that get their own scatter.
- */
-enum { SHORTENED = 16, SCATTERED = 24 };
+/* The likeliest models, of which every part is left out in turn; models that get their own scatter,
+ * and whose effects are fitted together. */
+enum { SHORTENED = 16, SCATTERED = 24, REFITTED = 12 };
 enum { COPIES_MAX = 3 };
 
 /* Scatter of bumps that is tried: of their height, of their radius as thousandths of it, along the
@@ -172,7 +173,8 @@ static const fg_evidence_option *find_option(const fg_evidence_search *s,
 }
 
 /* The set that another search proposes is a model, too, with its shapes: they were fitted together.
- * Effects added one by one do not reach all sets: what stands for two of them leads each alone. */
+ * Effects added one by one do not reach all sets: what stands for two of them leads each alone. The
+ * first of them were sized beside what the others explain. */
 static fg_status propose_seed(fg_context *ctx, fg_evidence_search *s) {
   fg_evidence_model model = s->models[0];
   for (size_t e = 0; e < s->seed->count; e++) {
@@ -188,8 +190,13 @@ static fg_status propose_seed(fg_context *ctx, fg_evidence_search *s) {
     model.part[model.parts++] = part;
     model.named++;
   }
+  if (!model.parts) return FG_OK;
+  for (int turn = 0; turn < 2; turn++) {
+    FG_TRY(fg_evidence_refit_model(ctx, s, &model));
+    FG_TRY(find_scatter(ctx, s, &model));
+  }
   set_score(s, &model);
-  if (model.parts) keep_model(s, &model);
+  keep_model(s, &model);
   return FG_OK;
 }
 
@@ -225,6 +232,8 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
     size_t count = choose_front(s, parts, front);
     for (size_t k = 0; k < count; k++) {
       fg_evidence_model model = s->models[front[k]];
+      if (parts > 1 && fg_evidence_is_named(&model))
+        FG_TRY(fg_evidence_refit_model(ctx, s, &model));
       FG_TRY(find_scatter(ctx, s, &model));
       set_score(s, &model);
       s->models[front[k]] = model;
@@ -254,6 +263,19 @@ static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
+/* Fits the likeliest models together, and finds the scatter of the bumps beside them. */
+static fg_status refit_models(fg_context *ctx, fg_evidence_search *s) {
+  double top = s->models[0].score;
+  for (size_t m = 0; m < s->count && m < SCATTERED; m++) {
+    fg_evidence_model *model = &s->models[m];
+    if (m < REFITTED && model->parts > 1 && model->score > top - REACH)
+      FG_TRY(fg_evidence_refit_model(ctx, s, model));
+    FG_TRY(find_scatter(ctx, s, model));
+    set_score(s, model);
+  }
+  return FG_OK;
+}
+
 fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
                                   const fg_effect_set *seed, const double *residual_um,
                                   const double *jacobian, const fg_evidence_prior *prior,
@@ -280,10 +302,7 @@ fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   FG_TRY(propose_seed(ctx, s));
   qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   FG_TRY(shorten_models(ctx, s));
-  for (size_t m = 0; m < s->count && m < SCATTERED; m++) {
-    FG_TRY(find_scatter(ctx, s, &s->models[m]));
-    set_score(s, &s->models[m]);
-  }
+  FG_TRY(refit_models(ctx, s));
   qsort(s->models, s->count, sizeof *s->models, compare_models);
   return FG_OK;
 }

@@ -10,7 +10,9 @@
 /* Share of the whole evidence by which a cause leads, too: with edges so sharp the error of linear
  * columns decides. */
 #define LEAD_SHARE 3e-4
-#define CLEAN_P    0.05
+/* The same where the edges lie so far from where the columns were taken that these err. */
+#define LEAD_SHARE_FAR 0.03
+#define CLEAN_P        0.05
 /* Standard errors of the number that gives a polynomial its name; largest distance of its middle,
  * in picture sizes: else it is a lower one. */
 #define LEADING_SIGMAS 2.0
@@ -38,6 +40,31 @@ static bool polynomial_bears_name(const fg_evidence_search *s, const fg_evidence
   return fabs(t) * FG_FIELD_HALF_MM <= MIDDLE_REACH * extent;
 }
 
+/* Gain, ln, up to which a cause may be an error of the columns. */
+static double margin_of(const fg_evidence_search *s, double share) {
+  return fmax(FG_EVIDENCE_LEAD, share * s->models[0].score);
+}
+
+/* A scale along one way is, but for the size of the whole, one along the other. */
+static bool holds_scale(const fg_evidence_model *model) {
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_effect *effect = model->part[k]->effect;
+    if (effect && effect->polynomial == FG_EFFECT_LINEAR) return true;
+  }
+  return false;
+}
+
+/* Returns true where a cubic has as much of its lowest power as its middle gives: the rest would be
+ * a scale. */
+static bool is_cubic_alone(const double *mean, const double *covariance, size_t n, double margin) {
+  double ratio = mean[1] / (3 * mean[2]), excess = mean[0] - ratio * mean[1], variance = 0;
+  const double by[] = {1, -2 * ratio, 3 * ratio * ratio};
+  for (size_t i = 0; i < 3; i++)
+    for (size_t k = 0; k < 3; k++)
+      variance += by[i] * by[k] * covariance[i * n + k];
+  return excess * excess <= 2 * margin * variance;
+}
+
 static bool lowest_leads(fg_evidence_problem *p, const fg_evidence_part *part, const double *mean) {
   double lead = 0, rest = 0;
   for (size_t c = 0; c < part->count; c++) {
@@ -61,6 +88,8 @@ static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_ev
     if (!part->effect) continue;
     if (part->effect->polynomial)
       *bears = *bears && polynomial_bears_name(s, part, mean, covariance, n, &middle_mm[k]);
+    if (part->effect->polynomial == FG_EFFECT_CUBIC && !holds_scale(model))
+      *bears = *bears && is_cubic_alone(mean, covariance, n, margin_of(s, LEAD_SHARE));
     if (part->effect->extends && part->effect->numbers == FG_EFFECT_LED)
       *bears = *bears && fabs(mean[0]) >= LEADING_SIGMAS * sqrt(covariance[0]);
     if (part->effect->bends) *bears = *bears && lowest_leads(&s->problem, part, mean);
@@ -161,8 +190,8 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_ran
 
 /* The score of the set of named effects alone whose numbers bear their names, of the fewest effects
  * within the margin of the best model: what more would gain is too little to be told from errors of
- * the columns. -INFINITY: there is none. */
-static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, double margin,
+ * the columns; `far`: of the likeliest. -INFINITY: there is none. */
+static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, bool far, double margin,
                                  double *score) {
   double middle_mm[FG_EVIDENCE_PARTS], top = s->models[0].score;
   size_t fewest = FG_EVIDENCE_PARTS + 1;
@@ -173,7 +202,7 @@ static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, double 
     FG_TRY(bears_names(ctx, s, &s->models[m], middle_mm, &bears));
     if (!bears) continue;
     *score = s->models[m].score;
-    fewest = s->models[m].parts;
+    fewest = far ? 0 : s->models[m].parts;
   }
   return FG_OK;
 }
@@ -263,12 +292,13 @@ static void find_certain(const fg_evidence_search *s, double margin, fg_evidence
 
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
  * share of the evidence. What leads it by less is no rival; what follows it closely is. */
-fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, fg_evidence_verdict *v) {
-  double top = s->models[0].score, margin = fmax(FG_EVIDENCE_LEAD, LEAD_SHARE * top), named;
+fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
+                             fg_evidence_verdict *v) {
+  double margin = margin_of(s, far ? LEAD_SHARE_FAR : LEAD_SHARE), named;
   *v = (fg_evidence_verdict){
       .outcome = FG_EVIDENCE_CLEAN, .p_null = probability_of_none(s), .margin = margin};
   if (v->p_null > CLEAN_P || !s->models[0].parts) return FG_OK;
-  FG_TRY(find_best_named(ctx, s, margin, &named));
+  FG_TRY(find_best_named(ctx, s, far, margin, &named));
   const tie_range range = choose_range(s, named, margin);
   FG_TRY(list_ties(ctx, s, &range, v));
   if (!v->ties) take_likeliest_rivals(s, v);

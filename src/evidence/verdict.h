@@ -31,7 +31,9 @@ typedef struct fg_evidence_verdict {
 /* Returns true when a model holds all causes of another. */
 bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other);
 
-fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search,
+/* `far`: the columns were taken so far from where the edges lie that they err; named effects are
+ * preferred, about which they can be taken anew. */
+fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search, bool far,
                              fg_evidence_verdict *verdict);
 
 #endif

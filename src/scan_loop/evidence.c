@@ -16,7 +16,7 @@
 #include "scan_loop/state.h"
 
 /* A fit of another set moves the geometry, and with it the columns: so often. */
-enum { LINEARISATIONS = 2 };
+enum { LINEARISATIONS = 3 };
 /* Ratio of misfit to noise from which the misfit counts. */
 #define MISFIT_MIN 1.2
 /* Relative difference up to which two shapes are one. */
@@ -294,14 +294,29 @@ static bool leaves_more(const fg_scan_loop *loop, const fg_evidence_verdict *v) 
   return loop->misfit || (v->ties && is_loose(&v->tie[0]));
 }
 
+/* Columns that err speak against the right names, too: they are taken anew about the likeliest
+ * ones before it is decided. */
+static fg_status move_to_names(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
+                               bool *moved) {
+  fg_evidence_verdict verdict;
+  *moved = false;
+  FG_TRY(fg_evidence_decide(ctx, search, true, &verdict));
+  if (verdict.outcome != FG_EVIDENCE_FOUND && verdict.outcome != FG_EVIDENCE_TIED) return FG_OK;
+  return take_verdict(ctx, loop, &verdict, moved);
+}
+
 static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residual, double *jacobian,
-                            bool *moved) {
+                            bool first, bool *moved) {
   fg_evidence_search search = {.count = 0};
   fg_evidence_verdict verdict;
   fg_status status = FG_OK;
   FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
   FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, &search));
-  FG_TRY_EXIT(fg_evidence_decide(ctx, &search, &verdict));
+  if (first && search.problem.large) {
+    FG_TRY_EXIT(move_to_names(ctx, loop, &search, moved));
+    if (*moved) goto exit;
+  }
+  FG_TRY_EXIT(fg_evidence_decide(ctx, &search, false, &verdict));
   loop->misfit = is_split_open(&verdict) || (!loop->edge_fit.discs && leaves_more(loop, &verdict));
   loop->edge_error_um = search.problem.error_um;
   loop->margin = verdict.margin;
@@ -325,7 +340,7 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, edge_fit->parameters * sizeof *jacobian,
                                  (void **)&jacobian));
   for (int round = 0; moved && round < LINEARISATIONS; round++)
-    FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &moved));
+    FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, round == 0, &moved));
   loop->by_evidence = true;
   loop->scanner_is_suspect = holds_scanner(&loop->explanations);
 exit:

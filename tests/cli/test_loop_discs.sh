@@ -166,6 +166,22 @@ J
 reports="$reports ripple"
 fi
 
+# Effects are fitted together: a ripple that is sought alone beside a step of two rows takes a period that speaks
+# against all that comes later.
+(
+pins='[3.0,3.4,2],[12.2,5.0,3.5],[20.9,3.1,1.75],[26.7,2.3,1.25],[33.0,4.0,2.5],[3.2,12.0,2.25],[9.5,10.7,1],[13.6,9.9,0.5],[20.0,12.6,3],[27.9,11.0,1.5],[35.3,12.3,2.75],[1.8,17.6,0.75]'
+plate together 3 '{"id":"scan.scale_y","value":-0.0005},{"id":"scan.shear","value":-0.0007},
+ {"id":"scan.carriage_ripple","amplitude_um":11,"period_mm":2.8,"phase_deg":30},
+ {"id":"scan.row_step","amplitude_um":-21.1668,"y_mm":11.715}'
+"$program" loop together.png --form discs -o together.out || fail "loop on a plate with a step of two rows"
+[ "$(value together.out "sorted(c['id'] + ' ' + c['verdict'] for c in r['claims'])")" = \
+  "['scan.carriage_ripple found', 'scan.row_step found', 'scan.scale_y found', 'scan.shear found']" ] ||
+  fail "effects beside a step of two rows: $(value together.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
+near "radius after a step of two rows" "$(error_of together.out after)" 0 0.15
+exit $failed
+) || failed=1
+reports="$reports together"
+
 for report in $reports; do valid loop_scan.schema.json $report.out; done
 
 "$program" loop --same-foil all.png ring.png --form discs >out.txt 2>err.txt

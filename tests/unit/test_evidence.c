@@ -89,7 +89,7 @@ static void decide_on(const fg_effect *effect, size_t start, const double *um,
   fg_evidence_find_start(&f.edge_fit, effect, start, shape, reach);
   assert_true(foil_rows_add_effect(&f, effect, shape, um, effect->columns) == effect->columns);
   search(&f, &(fg_evidence_prior){1, 1}, &s);
-  assert_ok(&ctx, fg_evidence_decide(&ctx, &s, v));
+  assert_ok(&ctx, fg_evidence_decide(&ctx, &s, false, v));
   for (size_t k = 0, used = 0; k < v->ties; k++)
     for (size_t i = 0; i < v->tie[k].parts && used < size; i++) {
       const fg_evidence_part *part = v->tie[k].part[i];
@@ -154,7 +154,7 @@ static void decide_written_of(bool discs, const double score[WRITTEN],
   for (int m = 0; m < WRITTEN; m++)
     put_model(&s, part, score[m], names[m]);
   f.edge_fit.discs = discs;
-  assert_ok(&ctx, fg_evidence_decide(&ctx, &s, v));
+  assert_ok(&ctx, fg_evidence_decide(&ctx, &s, false, v));
   f.edge_fit.discs = false;
   fg_evidence_search_close(&s);
   foil_rows_close(&f);
