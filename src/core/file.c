@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
+#include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -164,7 +165,9 @@ static fg_status open_stream(fg_context *ctx, fg_output *output) {
   static const cookie_io_functions_t functions = {.write = write_to_sink};
   output->sink->terminal = !output->sink->temporary && isatty(output->sink->descriptor);
   output->stream = fopencookie(output->sink, "wb", functions);
-  return output->stream ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: an output");
+  if (!output->stream) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: an output");
+  __fsetlocking(output->stream, FSETLOCKING_BYCALLER); /* one thread writes to an output */
+  return FG_OK;
 }
 
 fg_status fg_output_open(fg_context *ctx, const char *path, fg_output *output) {

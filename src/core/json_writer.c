@@ -2,8 +2,9 @@
 #include "core/json_writer.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "core/digits.h"
 
 void fg_json_begin(fg_json *json, FILE *out) {
   *json = (fg_json){.out = out};
@@ -86,39 +87,17 @@ void fg_json_line_end(fg_json *json) {
   json->line_depth--;
 }
 
-static void put_digits(char text[32], int digits, double value) {
-  snprintf(text, 32, "%.*g", digits, value + 0.0); /* + 0.0: never "-0" */
-}
-
-/* A host program's locale may write a comma. */
-static void write_point(char text[32]) {
-  char *comma = strchr(text, ',');
-  if (comma) *comma = '.';
-}
-
 void fg_json_format(char text[32], double value) {
-  if (!isfinite(value)) {
+  if (isfinite(value))
+    fg_digits_format(text, 10, value);
+  else
     strcpy(text, "null");
-    return;
-  }
-  put_digits(text, 10, value);
-  write_point(text);
-}
-
-/* Uses the fewest digits that read as the same number. */
-static void format_exactly(char text[32], double value) {
-  enum { ENOUGH = 17 };
-  int digits = 10;
-  do
-    put_digits(text, digits, value);
-  while (digits++ < ENOUGH && strtod(text, NULL) != value);
-  write_point(text);
 }
 
 void fg_json_number(fg_json *json, const char *name, double value) {
   char text[32];
   if (json->exact && isfinite(value))
-    format_exactly(text, value);
+    fg_digits_format_exactly(text, value);
   else
     fg_json_format(text, value);
   put_place(json, name);

@@ -19,6 +19,16 @@ double fg_squares_about(const double *values, size_t count, double mean) {
   return sum;
 }
 
+/* Selection leaves the larger values behind the middle. */
+double fg_median(double *values, size_t count) {
+  size_t middle = (count - 1) / 2;
+  double low = fg_select(values, count, middle), high = INFINITY;
+  if (count % 2) return low;
+  for (size_t i = middle + 1; i < count; i++)
+    high = fmin(high, values[i]);
+  return low + 0.5 * (high - low);
+}
+
 fg_spread fg_spread_of(double *sizes, size_t count) {
   if (!count) return (fg_spread){NAN, NAN, NAN};
   size_t last = count - 1;

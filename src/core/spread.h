@@ -11,6 +11,9 @@ double fg_mean(const double *values, size_t count);
 /* Sum of squared differences from `mean`. */
 double fg_squares_about(const double *values, size_t count, double mean);
 
+/* Returns the middle value, or the mean of the middle two; reorders the values. count > 0. */
+double fg_median(double *values, size_t count);
+
 /* Ratio of the sd of a normal distribution to the median of its absolute values. */
 #define FG_SD_PER_MEDIAN 1.4826
 

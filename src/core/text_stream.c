@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A stream into memory whose failed writes are errors. */
 #include <stdio.h>
+#include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +51,10 @@ FILE *fg_stream_open(char **text, size_t *size) {
   *stream = (text_stream){.text = text, .size = size};
   FILE *out = fopencookie(stream, "w",
                           (cookie_io_functions_t){.write = append_text, .close = end_stream_text});
-  if (!out) free(stream);
+  if (out)
+    __fsetlocking(out, FSETLOCKING_BYCALLER); /* one thread writes to it */
+  else
+    free(stream);
   return out;
 }
 

@@ -35,6 +35,10 @@ bool fg_utf8_is_valid(const char *text) {
 }
 
 size_t fg_utf8_put(FILE *out, const char *text) {
+  if ((unsigned char)*text < 0x80) {
+    fputc(*text, out);
+    return 1;
+  }
   size_t length = fg_utf8_length(text);
   if (length)
     fwrite(text, 1, length, out);

@@ -44,6 +44,7 @@ typedef struct lot_run {
   fg_scanner_model *model; /* the parsed model */
   fg_journal_head head;
   item_state *items;
+  fg_record *records; /* by item, while all that the report needs is recorded; NULL: not kept */
   size_t *todo, todo_count, done;
   fg_journal journal;
   fg_lot_outcome *outcome;
@@ -118,8 +119,29 @@ static fg_status accept_record(fg_context *ctx, void *user, fg_record *record,
     return FG_OK;
   run->items[item].entry = entry;
   strcpy(run->items[item].sha256, record->sha256);
-  return fg_lot_page_is_wanted(ctx, run->request->pages, &run->request->settings->design,
-                               record->foils, record->foil_count, &run->items[item].wanted);
+  FG_TRY(fg_lot_page_is_wanted(ctx, run->request->pages, &run->request->settings->design,
+                               record->foils, record->foil_count, &run->items[item].wanted));
+  if (!run->records) return FG_OK;
+  fg_record_free(&run->records[item]);
+  run->records[item] = *record;
+  *record = (fg_record){0};
+  return FG_OK;
+}
+
+/* Records that the report takes as they were read: those of a whole lot. */
+static fg_status make_room_for_records(fg_context *ctx, lot_run *run) {
+  void *block = NULL;
+  if (run->request->shard.count == 1 && !run->request->dry_run)
+    FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->records, &block));
+  run->records = block;
+  return FG_OK;
+}
+
+static void drop_records(lot_run *run) {
+  for (size_t i = 0; run->records && i < run->manifest.items; i++)
+    fg_record_free(&run->records[i]);
+  free(run->records);
+  run->records = NULL;
 }
 
 static fg_status name_page(fg_context *ctx, const lot_run *run, size_t item, const char *sha256,
@@ -157,7 +179,10 @@ static fg_status read_earlier(fg_context *ctx, lot_run *run) {
                    "%s: the folder holds results; --resume goes on with them, or choose another "
                    "folder",
                    run->request->folder);
-  FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, accept_record, run));
+  FG_TRY(make_room_for_records(ctx, run));
+  const fg_journal_visitor by = {
+      .visit = accept_record, .user = run, .threads = run->request->settings->jobs};
+  FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, &by));
   run->outcome->torn = damage.lines;
   run->outcome->first_torn = damage.first;
   run->outcome->earlier = damage.earlier;
@@ -315,6 +340,8 @@ static fg_status rewrite_journal(fg_context *ctx, lot_run *run) {
     entries[i] = run->items[i].entry;
   fg_status status = fg_journal_rewrite(ctx, run->results_path, &run->head, from, NULL, entries,
                                         run->manifest.items);
+  for (size_t i = 0; i < run->manifest.items; i++)
+    run->items[i].entry = entries[i];
   free(entries);
   return status;
 }
@@ -337,30 +364,18 @@ static fg_status measure_missing(fg_context *ctx, lot_run *run) {
   return status;
 }
 
-/* Notes the new offset of a record: the first rewrite has moved them. */
-static fg_status note_offset(fg_context *ctx, void *user, fg_record *record,
-                             fg_journal_entry entry) {
-  lot_run *run = user;
-  (void)ctx;
-  size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
-  if (item < run->manifest.items) run->items[item].entry = entry;
-  return FG_OK;
-}
-
-static fg_status order_journal(fg_context *ctx, lot_run *run) {
-  fg_journal_head head;
-  fg_journal_damage damage;
-  FG_TRY(fg_journal_read(ctx, run->results_path, &head, &damage, note_offset, run));
-  return rewrite_journal(ctx, run);
-}
-
 static fg_status write_report(fg_context *ctx, lot_run *run) {
-  fg_lot lot = {.manifest = run->manifest, .decimal_comma = run->request->decimal_comma};
+  fg_lot lot = {.manifest = run->manifest,
+                .head = run->head,
+                .records = run->records,
+                .decimal_comma = run->request->decimal_comma,
+                .threads = run->request->settings->jobs};
+  run->records = NULL;
   fg_lot_settings_default(
       &lot.settings); /* from the text, as a merge reads them: a recipe has ten digits */
-  FG_TRY(fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings));
   run->manifest = (fg_manifest){0};
-  fg_status status = fg_lot_load(ctx, run->request->folder, &lot);
+  fg_status status = fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings);
+  if (status == FG_OK) status = fg_lot_load(ctx, run->request->folder, &lot);
   if (status == FG_OK) status = fg_lot_write_report(ctx, run->request->folder, &lot, run->outcome);
   fg_lot_free(&lot);
   return status;
@@ -375,8 +390,9 @@ static fg_status measure_lot(fg_context *ctx, lot_run *run) {
   FG_TRY(read_earlier(ctx, run));
   FG_TRY(list_todo(ctx, run));
   if (run->request->dry_run) return FG_OK;
+  if (run->todo_count) drop_records(run);
   FG_TRY(measure_missing(ctx, run));
-  if (run->todo_count) FG_TRY(order_journal(ctx, run));
+  if (run->todo_count) FG_TRY(rewrite_journal(ctx, run));
   return run->request->shard.count == 1 ? write_report(ctx, run) : FG_OK;
 }
 
@@ -387,6 +403,7 @@ fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outc
   fg_status status = measure_lot(ctx, &run);
   pthread_mutex_destroy(&run.listening);
   if (run.lock >= 0) close(run.lock);
+  drop_records(&run);
   fg_manifest_index_free(&run.index);
   fg_manifest_free(&run.manifest);
   free(run.manifest_text);

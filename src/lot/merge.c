@@ -146,7 +146,8 @@ static fg_status add_shard(fg_context *ctx, merger *m) {
     return fg_fail(ctx, FG_ERR_DATA, "shard %zu/%zu is there twice: %s and %s", head.shard.index,
                    head.shard.count, m->folders[*folder - 1], m->folders[m->at]);
   *folder = m->at + 1;
-  FG_TRY(fg_journal_read(ctx, m->paths[m->at], &head, &damage, assign_record, m));
+  FG_TRY(fg_journal_read(ctx, m->paths[m->at], &head, &damage,
+                         &(fg_journal_visitor){.visit = assign_record, .user = m}));
   if (!damage.lines) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: line %zu is damaged or not whole (one of %zu); measure the shard with "

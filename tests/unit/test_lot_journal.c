@@ -71,7 +71,8 @@ static void journal_drops_a_torn_last_line(void **state) {
     seen s = {0};
     fg_journal_damage damage;
     assert_int_equal(truncate(path, whole.st_size - cut), 0);
-    assert_ok(&ctx, fg_journal_read(&ctx, path, &read, &damage, note, &s));
+    assert_ok(&ctx, fg_journal_read(&ctx, path, &read, &damage,
+                                    &(fg_journal_visitor){.visit = note, .user = &s}));
     assert_int_equal(damage.lines, 1);
     assert_int_equal(damage.first, 3);
     assert_int_equal(s.count, 1);
@@ -121,11 +122,57 @@ static void journal_keeps_every_undamaged_line(void **state) {
     fg_journal_damage damage;
     bool joined = at + 1 == first || at + 1 == second; /* no newline: two lines are one */
     change_byte(path, at);
-    assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
+    assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage,
+                                       &(fg_journal_visitor){.visit = note, .user = &s}));
     assert_int_equal(damage.lines, 1);
     assert_int_equal(damage.first, at < first ? 1 : at < second ? 2 : 3);
     assert_int_equal(s.count, (at < first ? 2 : 1) - (joined ? 1 : 0));
     change_byte(path, at);
+  }
+  unlink(path);
+  rmdir(folder);
+}
+
+static fg_status check_order(fg_context *ctx, void *user, fg_record *record,
+                             fg_journal_entry entry) {
+  size_t *count = user;
+  (void)ctx;
+  (void)entry;
+  assert_int_equal(strtoul(record->scan, NULL, 10), ++*count);
+  return FG_OK;
+}
+
+/* Several batches, parsed by several threads, with a damaged line in the second. */
+static void records_are_visited_in_order_by_any_number_of_threads(void **state) {
+  enum { RECORDS = 700, DAMAGED = 400 };
+  (void)state;
+  fg_context ctx;
+  char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/results.jsonl", folder);
+  fg_journal_head head = head_of(1, 1);
+  const char *from[] = {path};
+  fg_journal_entry none = {0};
+  assert_ok(&ctx, fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1));
+  fg_journal journal;
+  assert_ok(&ctx, fg_journal_open(&ctx, path, &journal));
+  for (size_t i = 1; i <= RECORDS; i++) {
+    char scan[16];
+    snprintf(scan, sizeof scan, "%zu", i);
+    append(&journal, scan);
+    if (i != DAMAGED) continue;
+    append(&journal, "a scan that is damaged");
+    change_byte(path, journal.end - 10);
+  }
+  assert_ok(&ctx, fg_journal_close(&ctx, &journal));
+  for (unsigned threads = 1; threads <= 4; threads++) {
+    size_t count = 0;
+    fg_journal_damage damage;
+    const fg_journal_visitor by = {.visit = check_order, .user = &count, .threads = threads};
+    assert_ok(&ctx, fg_journal_read(&ctx, path, &head, &damage, &by));
+    assert_int_equal(count, RECORDS);
+    assert_int_equal(damage.lines, 1);
+    assert_int_equal(damage.first, DAMAGED + 2);
   }
   unlink(path);
   rmdir(folder);
@@ -159,7 +206,8 @@ static void a_hole_in_the_journal_takes_no_memory(void **state) {
   assert_ok(&ctx, fg_journal_close(&ctx, &journal));
   seen s = {0};
   fg_journal_damage damage;
-  assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
+  assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage,
+                                     &(fg_journal_visitor){.visit = note, .user = &s}));
   assert_int_equal(damage.lines, 1);
   assert_int_equal(s.count, 1);
   assert_string_equal(s.scans[0], "two");
@@ -177,12 +225,19 @@ static void journal_knows_earlier_ones_and_other_files(void **state) {
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/results.jsonl", folder);
   write_text(path, "{\"schema\": \"foilgauge/results/1\"}\n{\"scan\": \"a.png\"}\n");
-  assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s));
+  assert_ok(&ctx, fg_journal_salvage(&ctx, path, &damage,
+                                     &(fg_journal_visitor){.visit = note, .user = &s}));
   assert_true(damage.earlier);
-  assert_status(&ctx, fg_journal_read(&ctx, path, &head, &damage, note, &s), FG_ERR_DATA);
+  assert_status(
+      &ctx,
+      fg_journal_read(&ctx, path, &head, &damage, &(fg_journal_visitor){.visit = note, .user = &s}),
+      FG_ERR_DATA);
   assert_has(ctx.message, "earlier version");
   write_text(path, "somebody's own text\nof two lines\n");
-  assert_status(&ctx, fg_journal_salvage(&ctx, path, &damage, note, &s), FG_ERR_DATA);
+  assert_status(
+      &ctx,
+      fg_journal_salvage(&ctx, path, &damage, &(fg_journal_visitor){.visit = note, .user = &s}),
+      FG_ERR_DATA);
   assert_has(ctx.message, "another folder");
   assert_int_equal(s.count, 0);
   unlink(path);
@@ -210,6 +265,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(journal_drops_a_torn_last_line),
       cmocka_unit_test(journal_keeps_every_undamaged_line),
+      cmocka_unit_test(records_are_visited_in_order_by_any_number_of_threads),
       cmocka_unit_test(a_hole_in_the_journal_takes_no_memory),
       cmocka_unit_test(journal_knows_earlier_ones_and_other_files),
       cmocka_unit_test(folder_has_one_owner),

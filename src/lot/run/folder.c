@@ -92,6 +92,28 @@ static fg_status move_record(fg_context *ctx, void *user, fg_record *record,
   return FG_OK;
 }
 
+static fg_status load_records(fg_context *ctx, const char *folder, fg_lot *lot) {
+  loader l = {.lot = lot};
+  const fg_journal_visitor by = {.visit = move_record, .user = &l, .threads = lot->threads};
+  char *path = NULL;
+  void *block;
+  fg_journal_damage damage;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, lot->manifest.items, sizeof *lot->records, &block));
+  lot->records = block;
+  FG_TRY_EXIT(fg_manifest_index_build(ctx, &lot->manifest, &l.index));
+  FG_TRY_EXIT(fg_lot_path(ctx, folder, "results.jsonl", &path));
+  FG_TRY_EXIT(fg_journal_read(ctx, path, &lot->head, &damage, &by));
+  for (size_t i = 0; i < lot->manifest.items; i++)
+    if (!lot->records[i].scan)
+      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
+                          fg_manifest_scan(&lot->manifest, i)));
+exit:
+  free(path);
+  fg_manifest_index_free(&l.index);
+  return status;
+}
+
 /* The copy has one name in every folder, so a report does not depend on the model's origin. */
 static fg_status load_model_copy(fg_context *ctx, const char *folder, fg_lot *lot) {
   char *path, *text = NULL;
@@ -113,28 +135,11 @@ static void name_by_folder(const char *folder, char *name, size_t size) {
 }
 
 fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
-  loader l = {.lot = lot};
-  char *path = NULL;
-  void *block;
-  fg_journal_damage damage;
-  fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_design_derive(ctx, &lot->settings.design, &lot->nominal));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, lot->manifest.items, sizeof *lot->records, &block));
-  lot->records = block;
-  FG_TRY_EXIT(fg_manifest_index_build(ctx, &lot->manifest, &l.index));
-  FG_TRY_EXIT(fg_lot_path(ctx, folder, "results.jsonl", &path));
-  FG_TRY_EXIT(fg_journal_read(ctx, path, &lot->head, &damage, move_record, &l));
-  for (size_t i = 0; i < lot->manifest.items; i++)
-    if (!lot->records[i].scan)
-      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
-                          fg_manifest_scan(&lot->manifest, i)));
-  FG_TRY_EXIT(fg_lot_mark_repeats(ctx, lot));
+  FG_TRY(fg_design_derive(ctx, &lot->settings.design, &lot->nominal));
+  if (!lot->records) FG_TRY(load_records(ctx, folder, lot));
+  FG_TRY(fg_lot_mark_repeats(ctx, lot));
   if (!lot->settings.name[0]) name_by_folder(folder, lot->settings.name, sizeof lot->settings.name);
-  if (lot->settings.model[0]) FG_TRY_EXIT(load_model_copy(ctx, folder, lot));
-exit:
-  free(path);
-  fg_manifest_index_free(&l.index);
-  return status;
+  return lot->settings.model[0] ? load_model_copy(ctx, folder, lot) : FG_OK;
 }
 
 void fg_lot_free(fg_lot *lot) {

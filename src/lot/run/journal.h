@@ -13,16 +13,8 @@
 #include <sys/types.h>
 #include <time.h>
 
-#include "foilgauge/lot.h"
+#include "lot/run/journal_head.h"
 #include "lot/run/record.h"
-
-/* First line: identifies the lot that the records belong to. */
-typedef struct fg_journal_head {
-  char version[32];
-  fg_lot_shard shard;
-  size_t items; /* of the manifest */
-  char manifest_sha256[65], recipe_sha256[65], measured_with[65];
-} fg_journal_head;
 
 /* Position of a record in the file. */
 typedef struct fg_journal_entry {
@@ -41,25 +33,32 @@ typedef struct fg_journal_damage {
 typedef fg_status fg_journal_visit(fg_context *ctx, void *user, fg_record *record,
                                    fg_journal_entry entry);
 
+typedef struct fg_journal_visitor {
+  fg_journal_visit *visit;
+  void *user;
+  unsigned threads; /* that parse; 0: as many as cores. Records are visited in the file's order */
+} fg_journal_visitor;
+
 /* Reads the file; damaged lines are counted and left out. FG_ERR_DATA when the first line is not
  * that of a journal of this version. */
 fg_status fg_journal_read(fg_context *ctx, const char *path, fg_journal_head *head,
-                          fg_journal_damage *damage, fg_journal_visit *visit, void *user);
+                          fg_journal_damage *damage, const fg_journal_visitor *by);
 
 /* Reads every usable record, for a caller who measures the others again. A damaged first line
  * counts as any other; a journal of an earlier version is only noted. FG_ERR_DATA when there is
  * neither a first line nor a record: the file is then no journal, and must not be overwritten. */
 fg_status fg_journal_salvage(fg_context *ctx, const char *path, fg_journal_damage *damage,
-                             fg_journal_visit *visit, void *user);
+                             const fg_journal_visitor *by);
 
 /* Reads the first line only. */
 fg_status fg_journal_read_head(fg_context *ctx, const char *path, fg_journal_head *head);
 
 /* Writes a file `to` from the head and the entries of the files `from`, in their order. Entry i is
- * of file from_of[i], or of the first where from_of is NULL. `to` is replaced once it is whole. */
+ * of file from_of[i], or of the first where from_of is NULL. `to` is replaced once it is whole.
+ * Entries are set to their places in it. */
 fg_status fg_journal_rewrite(fg_context *ctx, const char *to, const fg_journal_head *head,
                              const char *const *from, const size_t *from_of,
-                             const fg_journal_entry *entries, size_t count);
+                             fg_journal_entry *entries, size_t count);
 
 /* Gives the record of an item as a line (fg_record_format), allocated with malloc. */
 typedef fg_status fg_journal_source(fg_context *ctx, void *user, size_t item, char **line,

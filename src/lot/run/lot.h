@@ -21,10 +21,12 @@ typedef struct fg_lot {
   fg_record *records;      /* one for each item of the manifest */
   fg_scanner_model *model; /* model of the scanner that corrected every scan; NULL: none */
   bool decimal_comma;      /* tables of the report have decimal commas */
+  unsigned threads;        /* that read records and write the report; 0: as many as cores */
 } fg_lot;
 
 /* Reads folder/results.jsonl and the copy of the scanner's model into `lot`, which has its settings
- * and manifest already and owns them from then on. */
+ * and manifest already and owns them from then on. A lot that has its records and head, as they
+ * were read from the file, keeps them. */
 fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot);
 void fg_lot_free(fg_lot *lot);
 

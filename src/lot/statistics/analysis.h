@@ -317,7 +317,7 @@ typedef struct fg_lot_analysis {
    * sleeve. */
   fg_lot_spread clearance_pct, clearance_fitted_pct;
   fg_lot_difference *differences;
-  size_t difference_count, difference_capacity;
+  size_t difference_count;
   size_t group_tests, group_tests_differ; /* tests made, and tests whose adjusted p-value differs */
   fg_lot_dies dies;
   fg_lot_gauge *gauges;
@@ -423,6 +423,10 @@ fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 /* Computes mean, sd and range of `count` finite values, and the mode of their density. */
 fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count,
                              fg_bandwidth_rule rule, fg_lot_spread *spread);
+/* The same, and leaves the density, which the caller frees; count 0: the values do not scatter. */
+fg_status fg_lot_find_spread_and_density(fg_context *ctx, const double *values, size_t count,
+                                         fg_bandwidth_rule rule, fg_lot_spread *spread,
+                                         fg_density *density);
 
 /* Finds the uncertainty of the means of all quantities. Statistical errors average out over the
  * foils; the error of the calibration is the same in each and does not. */

@@ -15,34 +15,41 @@ typedef struct sums {
   size_t count;
 } sums;
 
+/* A quantity with its sums. */
 typedef struct reading {
-  const fg_lot_analysis *analysis;
-  const fg_lot_quantity *quantity;
-  size_t at; /* index of the quantity in the moves */
+  fg_lot_quantity *quantity;
+  size_t at;  /* index of the quantity in the moves */
+  bool whole; /* its whole error is common */
+  sums foil, all;
 } reading;
 
-/* Returns the change of a value, derived again, with a strip thicker by its statistical u. Foils
- * that lie flat have none. */
-static double move_by_thickness(const reading *r, const fg_foil *foil, const fg_foil_part *part) {
-  double moves[FG_CALIBRATED_MAX] = {0};
-  const fg_design *design = &r->analysis->lot->settings.design;
+enum { READINGS_MAX = 2 * (FG_QUANTITY_SHOWN_MAX + FG_TOLERANCES_MAX) };
+
+typedef struct readings {
+  const fg_lot_analysis *analysis;
+  reading reading[READINGS_MAX];
+  size_t count;
+} readings;
+
+/* Makes a strip thicker by its statistical u. */
+static fg_foil thicken(const fg_foil *foil) {
   fg_foil thick = *foil;
-  if (fg_foil_traits_of(design->kind)->lies_flat) return 0;
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_FOIL, &thick, &foil->calibrated);
   double u = isfinite(thick.u_thickness_mm) ? thick.u_thickness_mm : 0;
   thick.thickness_mm += u;
   if (thick.u_thickness_scan_mm > 0) thick.thickness_scan_mm += thick.u_thickness_scan_mm;
-  if (!part) {
-    fg_quantity_keep_farthest(FG_QUANTITY_OF_FOIL, foil, &thick, moves);
-    return moves[r->at];
-  }
-  const fg_thickness strip[] = {fg_foil_thickness(design, foil), fg_foil_thickness(design, &thick)};
-  const fg_bump *bump = part->object;
+  return thick;
+}
+
+/* Finds the changes of a bump's values, derived again with the thicker strip. */
+static void move_bump(const fg_lot *lot, const fg_foil *foil, const fg_foil *thick,
+                      const fg_bump *bump, double moves[FG_CALIBRATED_MAX]) {
+  const fg_design *design = &lot->settings.design;
+  const fg_thickness strip[] = {fg_foil_thickness(design, foil), fg_foil_thickness(design, thick)};
   fg_bump both[] = {*bump, *bump};
   for (int i = 0; i < 2; i++)
-    fg_bump_derive(design, &r->analysis->lot->nominal, &foil->overall, &strip[i], &both[i]);
+    fg_bump_derive(design, &lot->nominal, &foil->overall, &strip[i], &both[i]);
   fg_quantity_keep_farthest(FG_QUANTITY_OF_BUMP, &both[0], &both[1], moves);
-  return moves[r->at];
 }
 
 /* An unknown tone curve moves the edges alike in every scan. So a quantity between two edges, or at
@@ -55,60 +62,89 @@ static bool is_common_error(const fg_design *design, const fg_quantity *row) {
   return design->tone != FG_TONE_LINEAR && (between || on_edge);
 }
 
-static void add_reading(sums *sum, const reading *r, const fg_foil *foil,
-                        const fg_foil_part *part) {
+static void add_reading(reading *r, const void *object, const fg_calibrated *calibrated,
+                        const double moves[FG_CALIBRATED_MAX]) {
   const fg_quantity *row = r->quantity->row;
-  const void *object = part ? part->object : foil;
-  const fg_calibrated *calibrated = part ? part->calibrated : &foil->calibrated;
   double u = fg_quantity_uncertainty(row, object);
   double own = fg_quantity_calibration(r->quantity->owner, row, calibrated);
   if (!isfinite(fg_quantity_value(row, object)) || !isfinite(u)) return;
-  bool whole = is_common_error(&r->analysis->lot->settings.design, row);
-  double alike = whole ? sqrt(fmax(0, u * u - own * own)) : move_by_thickness(r, foil, part);
+  double alike = r->whole ? sqrt(fmax(0, u * u - own * own)) : moves[r->at];
   double statistical = fmax(0, u * u - own * own - alike * alike);
-  sum->u += sqrt(statistical);
-  sum->squares += statistical;
-  sum->alike += alike;
+  r->foil.u += sqrt(statistical);
+  r->foil.squares += statistical;
+  r->foil.alike += alike;
   for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
-    sum->move[s] += calibrated->move[s][r->at];
-  sum->count++;
+    r->foil.move[s] += calibrated->move[s][r->at];
+  r->foil.count++;
 }
 
-static sums sum_foil(const reading *r, const fg_foil *foil) {
-  sums sum = {0};
-  if (!fg_foil_is_measured(foil)) return sum;
-  if (r->quantity->owner == FG_QUANTITY_OF_FOIL) add_reading(&sum, r, foil, NULL);
-  for (size_t k = 0; k < fg_part_count(foil, r->quantity->owner); k++) {
-    const fg_foil_part part = fg_part_at(foil, r->quantity->owner, k);
-    if (fg_lot_part_counts(foil, r->quantity->owner, &part)) add_reading(&sum, r, foil, &part);
-  }
-  return sum;
+static void add_readings(readings *all, fg_quantity_owner owner, const void *object,
+                         const fg_calibrated *calibrated, const double moves[FG_CALIBRATED_MAX]) {
+  for (size_t i = 0; i < all->count; i++)
+    if (all->reading[i].quantity->owner == owner)
+      add_reading(&all->reading[i], object, calibrated, moves);
 }
 
-static fg_lot_mean_u find_quantity_mean_u(const fg_lot_analysis *analysis,
-                                          const fg_lot_quantity *quantity) {
-  sums all = {0};
-  const fg_lot_mean_u unknown = {NAN, NAN, NAN};
-  bool own = (quantity->row->uses & FG_QUANTITY_IS_OWN) != 0;
-  if (!fg_quantity_has_u(quantity->row)) return unknown;
-  const reading r = {analysis, quantity, fg_quantity_move_of(quantity->owner, quantity->row)};
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    sums foil = sum_foil(&r, analysis->foils[i].foil);
-    all.squares += own ? foil.squares : foil.u * foil.u; /* R0 errs alike in all bumps of a foil */
-    all.alike += foil.alike;
-    for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
-      all.move[s] += foil.move[s];
-    all.count += foil.count;
+/* Foils that lie flat move by no thickness. */
+static void read_foil(readings *all, const fg_foil *foil) {
+  const fg_lot *lot = all->analysis->lot;
+  fg_quantity_owner owner = all->analysis->parts;
+  bool flat = fg_foil_traits_of(lot->settings.design.kind)->lies_flat;
+  fg_foil thick = thicken(foil);
+  double moves[FG_CALIBRATED_MAX] = {0};
+  if (!flat) fg_quantity_keep_farthest(FG_QUANTITY_OF_FOIL, foil, &thick, moves);
+  add_readings(all, FG_QUANTITY_OF_FOIL, foil, &foil->calibrated, moves);
+  for (size_t k = 0; k < fg_part_count(foil, owner); k++) {
+    const fg_foil_part part = fg_part_at(foil, owner, k);
+    double part_moves[FG_CALIBRATED_MAX] = {0};
+    if (!fg_lot_part_counts(foil, owner, &part)) continue;
+    if (!flat) move_bump(lot, foil, &thick, part.object, part_moves);
+    add_readings(all, owner, part.object, part.calibrated, part_moves);
   }
-  if (!all.count) return unknown;
-  double n = (double)all.count, calibration = hypot(all.move[0], all.move[1]) / n;
-  double statistical = hypot(sqrt(all.squares), all.alike) / n;
+}
+
+/* Adds the sums of the foil, and empties them. R0 errs alike in all bumps of a foil. */
+static void add_foil(reading *r) {
+  bool own = (r->quantity->row->uses & FG_QUANTITY_IS_OWN) != 0;
+  r->all.squares += own ? r->foil.squares : r->foil.u * r->foil.u;
+  r->all.alike += r->foil.alike;
+  for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
+    r->all.move[s] += r->foil.move[s];
+  r->all.count += r->foil.count;
+  r->foil = (sums){0};
+}
+
+static void list_readings(fg_lot_analysis *analysis, readings *all) {
+  all->analysis = analysis;
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    fg_lot_quantity *quantity = &analysis->quantities[i];
+    quantity->mean_u = (fg_lot_mean_u){NAN, NAN, NAN};
+    if (!fg_quantity_has_u(quantity->row)) continue;
+    all->reading[all->count++] =
+        (reading){.quantity = quantity,
+                  .at = fg_quantity_move_of(quantity->owner, quantity->row),
+                  .whole = is_common_error(&analysis->lot->settings.design, quantity->row)};
+  }
+}
+
+static fg_lot_mean_u combine_sums(const sums *all) {
+  if (!all->count) return (fg_lot_mean_u){NAN, NAN, NAN};
+  double n = (double)all->count, calibration = hypot(all->move[0], all->move[1]) / n;
+  double statistical = hypot(sqrt(all->squares), all->alike) / n;
   return (fg_lot_mean_u){statistical, calibration, hypot(statistical, calibration)};
 }
 
 void fg_lot_find_mean_u(fg_lot_analysis *analysis) {
-  for (size_t i = 0; i < analysis->quantity_count; i++)
-    analysis->quantities[i].mean_u = find_quantity_mean_u(analysis, &analysis->quantities[i]);
+  readings all = {0};
+  list_readings(analysis, &all);
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    if (fg_foil_is_measured(foil)) read_foil(&all, foil);
+    for (size_t k = 0; k < all.count; k++)
+      add_foil(&all.reading[k]);
+  }
+  for (size_t k = 0; k < all.count; k++)
+    all.reading[k].quantity->mean_u = combine_sums(&all.reading[k].all);
 }
 
 /* Returns the change of ln K by one standard deviation of a source. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/spread.h"
 #include "lot/statistics/analysis.h"
 #include "lot/statistics/foil_levels.h"
@@ -20,9 +21,18 @@ enum { DRAWS_PER_TEST = 200, DRAWS_MIN = 9999 };
 typedef struct grouping {
   const fg_manifest_words *words;
   size_t *group, *owner; /* by foil of the analysis */
-  double *values;        /* room for two samples */
-  size_t draws;
+  size_t draws, pairs;   /* of groups */
+  fg_lot_analysis *analysis;
+  size_t *differences; /* number of each quantity; they begin at a multiple of `pairs` */
 } grouping;
+
+/* Quantity whose groups are compared. */
+typedef struct comparing {
+  const fg_lot_analysis *analysis;
+  const fg_lot_quantity *quantity;
+  fg_foil_levels levels;
+  double *values; /* room for two samples */
+} comparing;
 
 static double sd_about_mean(const double *values, size_t count, double mean) {
   return sqrt(fg_squares_about(values, count, mean) / (double)(count - 1));
@@ -69,65 +79,84 @@ static fg_status compare_samples(const double *values, size_t a, size_t b, doubl
   return status == FG_ERR_DATA ? FG_OK : status;
 }
 
-static fg_status compare_within(const fg_lot_analysis *analysis, const fg_foil_levels *levels,
-                                const grouping *by, size_t a, size_t b,
+static fg_status compare_within(const comparing *of, size_t a, size_t b,
                                 fg_lot_difference *difference) {
   fg_comparison comparison;
   bool compared;
-  size_t first = select_within(levels, a, by->values, &difference->within_sd_a),
-         second = select_within(levels, b, by->values + first, &difference->within_sd_b);
-  FG_TRY(compare_samples(by->values, first, second, analysis->lot->settings.confidence, &comparison,
-                         &compared));
+  size_t first = select_within(&of->levels, a, of->values, &difference->within_sd_a),
+         second = select_within(&of->levels, b, of->values + first, &difference->within_sd_b);
+  FG_TRY(compare_samples(of->values, first, second, of->analysis->lot->settings.confidence,
+                         &comparison, &compared));
   if (compared) difference->p[FG_LOT_TEST_WITHIN] = comparison.p_means;
   return FG_OK;
 }
 
-static fg_status add_difference(fg_context *ctx, fg_lot_analysis *analysis,
-                                const fg_lot_difference *difference) {
-  FG_TRY(fg_memory_reserve(ctx, analysis->difference_count + 1, sizeof *analysis->differences,
-                           &analysis->difference_capacity, (void **)&analysis->differences));
-  analysis->differences[analysis->difference_count++] = *difference;
-  return FG_OK;
-}
-
-static fg_status compare_pair(fg_context *ctx, fg_lot_analysis *analysis,
-                              const fg_lot_quantity *quantity, const fg_foil_levels *levels,
-                              const grouping *by, size_t a, size_t b) {
-  fg_lot_difference d = {.quantity = quantity, .a = by->words->word[a], .b = by->words->word[b]};
+/* *compared is false for samples that are skipped. */
+static fg_status compare_pair(fg_context *ctx, const comparing *of, const grouping *by, size_t a,
+                              size_t b, fg_lot_difference *d, bool *compared) {
   fg_relabelled_spread spread;
-  bool compared;
-  d.within_sd_a = d.within_sd_b = NAN;
+  *d = (fg_lot_difference){
+      .quantity = of->quantity, .a = by->words->word[a], .b = by->words->word[b]};
+  d->within_sd_a = d->within_sd_b = NAN;
   for (size_t t = 0; t < FG_LOT_GROUP_TESTS; t++)
-    d.p[t] = d.p_holm[t] = NAN;
-  d.foils_a = select_levels(levels, a, by->values, &d.count_a);
-  double *second = by->values + d.foils_a;
-  d.foils_b = select_levels(levels, b, second, &d.count_b);
-  FG_TRY(compare_samples(by->values, d.foils_a, d.foils_b, analysis->lot->settings.confidence,
-                         &d.comparison, &compared));
-  if (!compared) return FG_OK;
-  d.mean_a = fg_mean(by->values, d.foils_a);
-  d.mean_b = fg_mean(second, d.foils_b);
-  d.sd_a = sd_about_mean(by->values, d.foils_a, d.mean_a);
-  d.sd_b = sd_about_mean(second, d.foils_b, d.mean_b);
-  FG_TRY(fg_relabel_spreads(ctx, (fg_sample){by->values, d.foils_a}, (fg_sample){second, d.foils_b},
-                            by->draws, &spread));
-  d.p[FG_LOT_TEST_MEANS] = d.comparison.p_means;
-  d.p[FG_LOT_TEST_VARIANCES] = spread.p_variances;
-  d.p[FG_LOT_TEST_LEVENE] = spread.p_levene;
-  if (fg_owner_is_part(quantity->owner)) FG_TRY(compare_within(analysis, levels, by, a, b, &d));
-  return add_difference(ctx, analysis, &d);
+    d->p[t] = d->p_holm[t] = NAN;
+  d->foils_a = select_levels(&of->levels, a, of->values, &d->count_a);
+  double *second = of->values + d->foils_a;
+  d->foils_b = select_levels(&of->levels, b, second, &d->count_b);
+  FG_TRY(compare_samples(of->values, d->foils_a, d->foils_b, of->analysis->lot->settings.confidence,
+                         &d->comparison, compared));
+  if (!*compared) return FG_OK;
+  d->mean_a = fg_mean(of->values, d->foils_a);
+  d->mean_b = fg_mean(second, d->foils_b);
+  d->sd_a = sd_about_mean(of->values, d->foils_a, d->mean_a);
+  d->sd_b = sd_about_mean(second, d->foils_b, d->mean_b);
+  FG_TRY(fg_relabel_spreads(ctx, (fg_sample){of->values, d->foils_a},
+                            (fg_sample){second, d->foils_b}, by->draws, &spread));
+  d->p[FG_LOT_TEST_MEANS] = d->comparison.p_means;
+  d->p[FG_LOT_TEST_VARIANCES] = spread.p_variances;
+  d->p[FG_LOT_TEST_LEVENE] = spread.p_levene;
+  return fg_owner_is_part(of->quantity->owner) ? compare_within(of, a, b, d) : FG_OK;
 }
 
-static fg_status compare_quantity(fg_context *ctx, fg_lot_analysis *analysis,
-                                  const fg_lot_quantity *quantity, const grouping *by) {
-  fg_foil_levels levels;
-  FG_TRY(fg_foil_levels_make(ctx, analysis, quantity, by->group, by->owner, &levels));
+static fg_status compare_quantity(fg_context *ctx, void *shared, size_t i) {
+  const grouping *by = shared;
+  comparing of = {.analysis = by->analysis, .quantity = &by->analysis->quantities[i]};
+  fg_lot_difference *differences = by->analysis->differences + i * by->pairs;
   fg_status status = FG_OK;
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, 2 * of.analysis->foil_count, sizeof *of.values, (void **)&of.values));
+  FG_TRY_EXIT(fg_foil_levels_make(ctx, of.analysis, of.quantity, by->group, by->owner, &of.levels));
   for (size_t a = 0; a < by->words->count; a++)
-    for (size_t b = a + 1; b < by->words->count && status == FG_OK; b++)
-      status = compare_pair(ctx, analysis, quantity, &levels, by, a, b);
-  fg_foil_levels_free(&levels);
+    for (size_t b = a + 1; b < by->words->count; b++) {
+      bool compared;
+      FG_TRY_EXIT(compare_pair(ctx, &of, by, a, b, &differences[by->differences[i]], &compared));
+      by->differences[i] += compared;
+    }
+exit:
+  fg_foil_levels_free(&of.levels);
+  free(of.values);
   return status;
+}
+
+/* Leaves out the room of pairs that were skipped. */
+static void join_differences(const grouping *by) {
+  fg_lot_analysis *analysis = by->analysis;
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    memmove(analysis->differences + analysis->difference_count,
+            analysis->differences + i * by->pairs,
+            by->differences[i] * sizeof *analysis->differences);
+    analysis->difference_count += by->differences[i];
+  }
+}
+
+static fg_status compare_quantities(fg_context *ctx, grouping *by) {
+  fg_lot_analysis *analysis = by->analysis;
+  FG_TRY(fg_memory_allocate(ctx, analysis->quantity_count * by->pairs,
+                            sizeof *analysis->differences, (void **)&analysis->differences));
+  FG_TRY(
+      fg_parallel_run(ctx, analysis->lot->threads, analysis->quantity_count, compare_quantity, by));
+  join_differences(by);
+  return FG_OK;
 }
 
 /* Adjusts all tests as one family, for a reader looks for the smallest p of the page. */
@@ -156,14 +185,16 @@ bool fg_lot_group_differs(const fg_lot_analysis *analysis, double p_holm) {
 
 static fg_status compare_groups(fg_context *ctx, fg_lot_analysis *analysis, size_t column,
                                 const fg_manifest_words *words) {
-  grouping by = {.words = words};
+  grouping by = {
+      .words = words, .pairs = words->count * (words->count - 1) / 2, .analysis = analysis};
   fg_status status = FG_OK;
-  size_t foils = analysis->foil_count, pairs = words->count * (words->count - 1) / 2;
-  size_t draws = (size_t)DRAWS_PER_TEST * FG_LOT_GROUP_TESTS * pairs * analysis->quantity_count;
+  size_t foils = analysis->foil_count;
+  size_t draws = (size_t)DRAWS_PER_TEST * FG_LOT_GROUP_TESTS * by.pairs * analysis->quantity_count;
   by.draws = draws > DRAWS_MIN ? draws : DRAWS_MIN;
   FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *by.group, (void **)&by.group));
   FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *by.owner, (void **)&by.owner));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * foils, sizeof *by.values, (void **)&by.values));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->quantity_count, sizeof *by.differences,
+                                 (void **)&by.differences));
   FG_TRY_EXIT(fg_lot_find_owners(ctx, analysis, by.owner));
   for (size_t i = 0; i < foils; i++) {
     const char *word = fg_manifest_cell(&analysis->lot->manifest, analysis->foils[i].item, column);
@@ -171,13 +202,12 @@ static fg_status compare_groups(fg_context *ctx, fg_lot_analysis *analysis, size
     for (size_t g = 0; g < words->count; g++)
       if (!strcmp(words->word[g], word)) by.group[i] = g;
   }
-  for (size_t q = 0; q < analysis->quantity_count; q++)
-    FG_TRY_EXIT(compare_quantity(ctx, analysis, &analysis->quantities[q], &by));
+  FG_TRY_EXIT(compare_quantities(ctx, &by));
   FG_TRY_EXIT(adjust_p_values(ctx, analysis));
 exit:
   free(by.group);
   free(by.owner);
-  free(by.values);
+  free(by.differences);
   return status;
 }
 

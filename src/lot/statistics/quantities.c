@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/parallel.h"
+#include "core/spread.h"
 #include "foilgauge/distribution.h"
 #include "lot/statistics/analysis.h"
 #include "quantity/quantity_rows.h"
@@ -79,28 +80,30 @@ static fg_status collect_values(fg_context *ctx, const fg_lot_analysis *analysis
   return FG_OK;
 }
 
+static fg_status find_value_median(fg_context *ctx, const double *values, size_t count,
+                                   double *median) {
+  void *block;
+  *median = NAN;
+  if (count == 0) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
+  memcpy(block, values, count * sizeof *values);
+  *median = fg_median(block, count);
+  free(block);
+  return FG_OK;
+}
+
 static fg_status describe_values(fg_context *ctx, const fg_lot_settings *settings,
                                  fg_lot_quantity *quantity) {
   fg_lot_spread spread;
-  void *block;
-  FG_TRY(fg_lot_find_spread(ctx, quantity->value, quantity->count, settings->bandwidth, &spread));
+  FG_TRY(fg_lot_find_spread_and_density(ctx, quantity->value, quantity->count, settings->bandwidth,
+                                        &spread, &quantity->density));
+  quantity->has_density = quantity->density.count > 0;
   quantity->mean = spread.mean;
   quantity->sd = spread.sd;
   quantity->min = spread.min;
   quantity->max = spread.max;
   quantity->mode = spread.mode;
-  quantity->median = NAN;
-  if (quantity->count == 0) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, quantity->count, sizeof(double), &block));
-  double *sorted = block;
-  memcpy(sorted, quantity->value, quantity->count * sizeof *sorted);
-  fg_sort(sorted, quantity->count);
-  quantity->median = fg_sample_quantile(sorted, quantity->count, 0.5);
-  free(sorted);
-  if (!(quantity->sd > 0)) return FG_OK;
-  quantity->has_density = true;
-  return fg_density_fit(ctx, quantity->value, quantity->count, settings->bandwidth,
-                        &quantity->density);
+  return find_value_median(ctx, quantity->value, quantity->count, &quantity->median);
 }
 
 static size_t highest_number(const fg_lot_analysis *analysis) {
@@ -217,16 +220,19 @@ fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_qua
   return fg_capability_compute(ctx, &input, &quantity->capability);
 }
 
+static fg_status analyse_quantity(fg_context *ctx, void *shared, size_t i) {
+  fg_lot_analysis *analysis = shared;
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  fg_lot_quantity *quantity = &analysis->quantities[i];
+  FG_TRY(collect_values(ctx, analysis, quantity));
+  FG_TRY(describe_values(ctx, settings, quantity));
+  FG_TRY(describe_places(ctx, analysis, quantity));
+  FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, analysis->foil_count, quantity));
+  return fg_lot_judge_capability(ctx, settings->confidence, quantity);
+}
+
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY(list_quantities(ctx, analysis));
-  for (size_t i = 0; i < analysis->quantity_count; i++) {
-    fg_lot_quantity *quantity = &analysis->quantities[i];
-    FG_TRY(collect_values(ctx, analysis, quantity));
-    FG_TRY(describe_values(ctx, &analysis->lot->settings, quantity));
-    FG_TRY(describe_places(ctx, analysis, quantity));
-    FG_TRY(fg_lot_chart_quantity(ctx, analysis->lot->settings.run_rules, analysis->foil_count,
-                                 quantity));
-    FG_TRY(fg_lot_judge_capability(ctx, analysis->lot->settings.confidence, quantity));
-  }
-  return FG_OK;
+  return fg_parallel_run(ctx, analysis->lot->threads, analysis->quantity_count, analyse_quantity,
+                         analysis);
 }

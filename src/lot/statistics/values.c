@@ -59,10 +59,11 @@ const fg_lot_quantity *fg_lot_leading_quantity(const fg_lot_analysis *analysis) 
   return fg_lot_find_quantity(analysis, beams ? "compliance_error_pct" : "height_mm");
 }
 
-fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count,
-                             fg_bandwidth_rule rule, fg_lot_spread *spread) {
-  fg_density density;
+fg_status fg_lot_find_spread_and_density(fg_context *ctx, const double *values, size_t count,
+                                         fg_bandwidth_rule rule, fg_lot_spread *spread,
+                                         fg_density *density) {
   double squares = 0;
+  *density = (fg_density){0};
   *spread =
       (fg_lot_spread){.count = count, .mode = NAN, .sd = NAN, .min = INFINITY, .max = -INFINITY};
   for (size_t i = 0; i < count; i++) {
@@ -76,8 +77,15 @@ fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count
   if (count > 1) spread->sd = sqrt(squares / (double)(count - 1));
   spread->relative_sd_pct = 100 * spread->sd / fabs(spread->mean);
   if (!(spread->sd > 0)) return FG_OK;
-  FG_TRY(fg_density_fit(ctx, values, count, rule, &density));
-  spread->mode = fg_density_mode(&density);
+  FG_TRY(fg_density_fit(ctx, values, count, rule, density));
+  spread->mode = fg_density_mode(density);
+  return FG_OK;
+}
+
+fg_status fg_lot_find_spread(fg_context *ctx, const double *values, size_t count,
+                             fg_bandwidth_rule rule, fg_lot_spread *spread) {
+  fg_density density;
+  FG_TRY(fg_lot_find_spread_and_density(ctx, values, count, rule, spread, &density));
   fg_density_free(&density);
   return FG_OK;
 }
