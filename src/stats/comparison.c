@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
-#include "foilgauge/density.h"
+#include "core/spread.h"
 #include "foilgauge/distribution.h"
 
 typedef struct moments {
@@ -58,8 +57,7 @@ static void compare_variances(moments a, moments b, double confidence, fg_compar
 /* Distances from the sample's median. */
 static void take_distances(fg_sample sample, double *distance) {
   memcpy(distance, sample.values, sample.count * sizeof *distance);
-  fg_sort(distance, sample.count);
-  double median = fg_sample_quantile(distance, sample.count, 0.5);
+  double median = fg_median(distance, sample.count);
   for (size_t i = 0; i < sample.count; i++)
     distance[i] = fabs(sample.values[i] - median);
 }

@@ -7,14 +7,15 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
 #include "core/spread.h"
-#include "foilgauge/density.h"
 
 enum {
-  VALUES_MIN = 3,    /* the distances of two values from their median are equal */
-  ALL_MAX = 10000,   /* relabellings that are all counted */
-  EXCEEDED_MAX = 100 /* a p-value to a tenth of itself */
+  VALUES_MIN = 3,       /* the distances of two values from their median are equal */
+  ALL_MAX = 10000,      /* relabellings that are all counted */
+  EXCEEDED_MAX = 100,   /* a p-value to a tenth of itself */
+  EXCEEDED_FEW = 10,    /* a p-value that is hardly known */
+  DEALT_MAX = 50000000, /* values dealt in all relabellings of large samples */
+  DRAWS_MIN = 500
 };
 
 /* Statistics that differ by rounding only are the same. */
@@ -32,8 +33,7 @@ typedef struct deal {
 /* Replaces the values by their distances from the median. */
 static void replace_by_distances(double *value, double *sorted, size_t count) {
   memcpy(sorted, value, count * sizeof *sorted);
-  fg_sort(sorted, count);
-  double median = fg_sample_quantile(sorted, count, 0.5);
+  double median = fg_median(sorted, count);
   for (size_t i = 0; i < count; i++)
     value[i] = fabs(value[i] - median);
 }
@@ -60,8 +60,14 @@ static void find_statistics(const deal *d, double statistic[STATISTICS]) {
 
 typedef struct tally {
   double own[STATISTICS];
+  double squares[STATISTICS]; /* sum over the relabelled samples, of deviates */
   size_t exceeded[STATISTICS], dealt[STATISTICS];
 } tally;
+
+/* Square of the deviate that a statistic is the size of: ln F; Levene's statistic is a square. */
+static double square_of(int statistic, double value) {
+  return statistic == VARIANCES ? value * value : value;
+}
 
 /* True where every statistic has been exceeded often enough. */
 static bool count_exceeded(const deal *d, size_t enough, tally *t) {
@@ -71,6 +77,7 @@ static bool count_exceeded(const deal *d, size_t enough, tally *t) {
   for (int s = 0; s < STATISTICS; s++) {
     if (t->exceeded[s] >= enough) continue;
     t->dealt[s]++;
+    t->squares[s] += square_of(s, statistic[s]);
     t->exceeded[s] += statistic[s] >= t->own[s] * (1 - ROUNDING);
     done = done && t->exceeded[s] >= enough;
   }
@@ -114,34 +121,48 @@ static size_t draw_below(uint64_t *seed, size_t limit) {
   return (size_t)((double)((z ^ (z >> 31)) >> 11) * 0x1p-53 * (double)limit);
 }
 
+/* Shuffles the values: their order stays as it was at the begin. */
 static void shuffle(const deal *d, uint64_t *seed) {
   for (size_t i = 0; i < d->first; i++) {
-    size_t k = i + draw_below(seed, d->count - i), kept = d->order[i];
-    d->order[i] = d->order[k];
-    d->order[k] = kept;
+    size_t k = i + draw_below(seed, d->count - i);
+    double kept = d->value[i];
+    d->value[i] = d->value[k];
+    d->value[k] = kept;
   }
+}
+
+/* The original labels count among those drawn, unless the drawing ended before; the complete
+ * enumeration includes them. */
+static double counted_p(const tally *t, int s, bool complete) {
+  double exceeded = (double)t->exceeded[s], dealt = (double)t->dealt[s];
+  bool own = !complete && t->exceeded[s] < EXCEEDED_MAX;
+  return own ? (exceeded + 1) / (dealt + 1) : fmax(exceeded, 1) / dealt;
+}
+
+/* The deviate of a relabelled sample tends to a normal one as the samples grow (Hoeffding 1951).
+ * The draws tell its scatter well, but far tails only by many more. */
+static double tail_p(const tally *t, int s) {
+  double scatter = t->squares[s] / (double)t->dealt[s];
+  return erfc(sqrt(square_of(s, t->own[s]) / scatter / 2));
 }
 
 /* `t` holds the statistics of the original labels. */
 static void relabel(const deal *d, size_t draws, tally *t, fg_relabelled_spread *result) {
   uint64_t seed = 1;
   double p[STATISTICS];
+  size_t few = d->count > DEALT_MAX / DRAWS_MIN ? DRAWS_MIN : DEALT_MAX / d->count;
+  bool cut = draws > few;
   result->complete = can_deal_all(d->count, d->first);
   if (result->complete) do
       count_exceeded(d, SIZE_MAX, t);
     while (choose_next(d));
   else
-    for (size_t i = 0; i < draws; i++) {
+    for (size_t i = 0; i < (cut ? few : draws); i++) {
       shuffle(d, &seed);
       if (count_exceeded(d, EXCEEDED_MAX, t)) break;
     }
-  /* The original labels count among those drawn, unless the drawing ended before; the complete
-   * enumeration includes them. */
-  for (int s = 0; s < STATISTICS; s++) {
-    double exceeded = (double)t->exceeded[s], dealt = (double)t->dealt[s];
-    bool own = !result->complete && t->exceeded[s] < EXCEEDED_MAX;
-    p[s] = own ? (exceeded + 1) / (dealt + 1) : fmax(exceeded, 1) / dealt;
-  }
+  for (int s = 0; s < STATISTICS; s++)
+    p[s] = cut && t->exceeded[s] < EXCEEDED_FEW ? tail_p(t, s) : counted_p(t, s, result->complete);
   result->p_variances = p[VARIANCES];
   result->p_levene = p[LEVENE];
 }

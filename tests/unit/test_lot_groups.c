@@ -114,6 +114,26 @@ static void few_values_are_dealt_in_every_way(void **state) {
   assert_true(isnan(spread.p_levene));
 }
 
+/* Of normal values the F test is exact, and relabelling must agree far below 1/draws. */
+static void tails_of_large_samples_are_those_of_the_f_test(void **state) {
+  enum { COUNT = 30000, DRAWS = 1000000 };
+  static double a[COUNT], b[COUNT];
+  uint64_t seed = 11;
+  fg_relabelled_spread spread;
+  fg_comparison exact;
+  (void)state;
+  for (size_t i = 0; i < COUNT; i++) {
+    a[i] = random_gaussian(&seed);
+    b[i] = 1.04 * random_gaussian(&seed);
+  }
+  const fg_sample first = {a, COUNT}, second = {b, COUNT};
+  assert_ok(&test_context, fg_comparison_compute(&test_context, first, second, 0.95, &exact));
+  assert_ok(&test_context, fg_relabel_spreads(&test_context, first, second, DRAWS, &spread));
+  assert_true(exact.p_variances < 1e-5);
+  assert_true(fabs(log(spread.p_variances) / log(exact.p_variances) - 1) < 0.15);
+  assert_true(fabs(log(spread.p_levene) / log(exact.p_levene) - 1) < 0.15);
+}
+
 static void page_says_how_many_tests_differ(void **state) {
   (void)state;
   fg_design design;
@@ -141,6 +161,7 @@ int main(void) {
       cmocka_unit_test(a_missing_bump_does_not_shift_its_foil),
       cmocka_unit_test(scans_of_one_foil_count_once),
       cmocka_unit_test(few_values_are_dealt_in_every_way),
+      cmocka_unit_test(tails_of_large_samples_are_those_of_the_f_test),
       cmocka_unit_test(page_says_how_many_tests_differ),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
