@@ -206,8 +206,11 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis) {
   }
   free(analysis->quantities);
   free(analysis->stiffness.normalised);
-  for (size_t i = 0; i < analysis->bearing_count; i++)
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
     fg_decision_free(&analysis->bearings[i].decision);
+    free(analysis->bearings[i].pad);
+    free(analysis->bearings[i].angle_deg);
+  }
   free(analysis->bearings);
   fg_lot_assembly_free(&analysis->assembly);
   free(analysis->differences);

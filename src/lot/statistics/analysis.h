@@ -163,11 +163,10 @@ typedef struct fg_lot_stiffness {
 typedef struct fg_lot_bearing {
   const char *name; /* from the column; NULL: assumed, three foils in a row */
   size_t number;
-  const fg_lot_foil *pad[FG_BEARING_BUMPS_MAX]; /* layout.pads; NULL: missing */
+  const fg_lot_foil **pad; /* layout.pads; NULL: missing; owned */
   /* Angles and clearances of the foils fitted into the sleeve. NaN: no value, or of a crushed bump.
    */
-  double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
-  double u_clearance_mm[FG_BEARING_BUMPS_MAX];
+  double *angle_deg, *clearance_mm, *u_clearance_mm; /* `places` each; owned: one block */
   size_t places;
   bool known;
   fg_bearing_clearance clearance;

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
+#include "core/select.h"
 #include "lot/statistics/analysis.h"
 #include "quantity/quantity_rows.h"
 
@@ -14,7 +16,8 @@ static fg_status add_bearing(fg_context *ctx, fg_lot_analysis *analysis, const c
                            &analysis->bearing_capacity, (void **)&analysis->bearings));
   *bearing = &analysis->bearings[analysis->bearing_count++];
   **bearing = (fg_lot_bearing){.name = name, .number = analysis->bearing_count};
-  return FG_OK;
+  return fg_memory_allocate(ctx, analysis->layout.pads, sizeof *(*bearing)->pad,
+                            (void **)&(*bearing)->pad);
 }
 
 static bool has_measured_foil(const fg_lot_foil *foil) {
@@ -38,10 +41,36 @@ static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
-static fg_lot_bearing *find_named_bearing(fg_lot_analysis *analysis, const char *name) {
-  for (size_t i = analysis->bearing_count; i-- > 0;)
-    if (!strcmp(analysis->bearings[i].name, name)) return &analysis->bearings[i];
-  return NULL;
+/* Foil of a named bearing. */
+typedef struct named_foil {
+  const char *name;
+  size_t at; /* in the lot */
+} named_foil;
+
+static int compare_named(const void *a, const void *b) {
+  const named_foil *p = a, *q = b;
+  int order = strcmp(p->name, q->name);
+  return order ? order : (p->at > q->at) - (p->at < q->at);
+}
+
+/* Finds for each foil of a named bearing the first foil of that name. */
+static fg_status find_first_foils(fg_context *ctx, const fg_lot_analysis *analysis, size_t column,
+                                  size_t *first) {
+  size_t count = 0;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof(named_foil), &block));
+  named_foil *named = block;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const char *name = fg_manifest_cell(&analysis->lot->manifest, analysis->foils[i].item, column);
+    if (*name) named[count++] = (named_foil){name, i};
+  }
+  fg_sort_items(named, count, sizeof *named, compare_named);
+  for (size_t i = 0; i < count; i++) {
+    bool same = i > 0 && !strcmp(named[i].name, named[i - 1].name);
+    first[named[i].at] = same ? first[named[i - 1].at] : named[i].at;
+  }
+  free(named);
+  return FG_OK;
 }
 
 /* Returns the pad that the manifest says, else the next free one; `pads` when there is none. */
@@ -57,27 +86,48 @@ static size_t choose_pad(const fg_lot_bearing *bearing, const char *text, size_t
   return next;
 }
 
-/* Places the foils. A foil that could not be measured leaves its place unknown. */
-static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t column) {
+/* A foil that could not be measured leaves its place unknown. */
+static void place_foil(fg_lot_analysis *analysis, const fg_lot_foil *foil,
+                       fg_lot_bearing *bearing) {
   const fg_manifest *manifest = &analysis->lot->manifest;
-  const fg_lot_settings *settings = &analysis->lot->settings;
-  size_t pad_column = fg_manifest_column(manifest, settings->pad_column);
+  size_t pad_column = fg_manifest_column(manifest, analysis->lot->settings.pad_column);
+  bool bad;
+  if (!has_measured_foil(foil)) return;
+  const char *cell = fg_manifest_cell(manifest, foil->item, pad_column);
+  size_t pad = choose_pad(bearing, cell, analysis->layout.pads, &bad);
+  analysis->unplaced.bad_pads += bad;
+  analysis->unplaced.displaced += pad == analysis->layout.pads;
+  if (pad < analysis->layout.pads) bearing->pad[pad] = foil;
+}
+
+/* Places the foils in bearings, which are numbered as their first foils come. first[i] is the first
+ * foil of foil i's bearing; `number` is room for the bearing's number by its first foil. */
+static fg_status place_by_first(fg_context *ctx, fg_lot_analysis *analysis, size_t column,
+                                const size_t *first, size_t *number) {
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
-    const char *name = fg_manifest_cell(manifest, foil->item, column);
-    bool bad;
+    const char *name = fg_manifest_cell(&analysis->lot->manifest, foil->item, column);
+    fg_lot_bearing *bearing;
     analysis->unplaced.without += !*name;
     if (!*name) continue;
-    fg_lot_bearing *bearing = find_named_bearing(analysis, name);
-    if (!bearing) FG_TRY(add_bearing(ctx, analysis, name, &bearing));
-    if (!has_measured_foil(foil)) continue;
-    const char *cell = fg_manifest_cell(manifest, foil->item, pad_column);
-    size_t pad = choose_pad(bearing, cell, analysis->layout.pads, &bad);
-    analysis->unplaced.bad_pads += bad;
-    analysis->unplaced.displaced += pad == analysis->layout.pads;
-    if (pad < analysis->layout.pads) bearing->pad[pad] = foil;
+    if (first[i] == i) {
+      number[i] = analysis->bearing_count;
+      FG_TRY(add_bearing(ctx, analysis, name, &bearing));
+    }
+    place_foil(analysis, foil, &analysis->bearings[number[first[i]]]);
   }
   return FG_OK;
+}
+
+static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t column) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, 2 * analysis->foil_count, sizeof(size_t), &block));
+  size_t *first = block;
+  fg_status status = find_first_foils(ctx, analysis, column, first);
+  if (status == FG_OK)
+    status = place_by_first(ctx, analysis, column, first, first + analysis->foil_count);
+  free(block);
+  return status;
 }
 
 /* Returns the common uncertainty of all clearances of a bearing: that of the strip's thickness and
@@ -113,11 +163,23 @@ fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_l
   return unknown;
 }
 
-static void assess_bearing(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
+static fg_status allocate_places(fg_context *ctx, size_t places, fg_lot_bearing *bearing) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, 3 * places, sizeof *bearing->angle_deg, &block));
+  bearing->angle_deg = block;
+  bearing->clearance_mm = bearing->angle_deg + places;
+  bearing->u_clearance_mm = bearing->clearance_mm + places;
+  return FG_OK;
+}
+
+static fg_status assess_bearing(fg_context *ctx, void *shared_analysis, size_t i) {
+  fg_lot_analysis *analysis = shared_analysis;
+  fg_lot_bearing *bearing = &analysis->bearings[i];
   const fg_bearing_layout *layout = &analysis->layout;
   double shared[FG_BEARING_BUMPS_MAX], own[FG_BEARING_BUMPS_MAX];
   size_t pads[FG_BEARING_BUMPS_MAX];
   fg_context unused;
+  FG_TRY(allocate_places(ctx, layout->pads * layout->bumps_per_pad, bearing));
   for (size_t pad = 0; pad < layout->pads; pad++)
     for (size_t bump = 0; bump < layout->bumps_per_pad; bump++) {
       size_t at = bearing->places++;
@@ -134,6 +196,7 @@ static void assess_bearing(const fg_lot_analysis *analysis, fg_lot_bearing *bear
   bearing->known =
       fg_bearing_assess_uncertainty(&unused, bearing->angle_deg, bearing->clearance_mm,
                                     bearing->places, &uncertainty, &bearing->clearance) == FG_OK;
+  return FG_OK;
 }
 
 /* Decides the bearings. A tolerance that judges no bearing must not read as a pass. */
@@ -178,8 +241,8 @@ fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
     FG_TRY(assume_bearings(ctx, analysis));
   else
     FG_TRY(place_foils(ctx, analysis, column));
-  for (size_t i = 0; i < analysis->bearing_count; i++)
-    assess_bearing(analysis, &analysis->bearings[i]);
+  FG_TRY(fg_parallel_run(ctx, analysis->lot->threads, analysis->bearing_count, assess_bearing,
+                         analysis));
   FG_TRY(decide_bearings(ctx, analysis));
   FG_TRY(describe_relative_clearance(ctx, analysis, "clearance_mm", &analysis->clearance_pct));
   return describe_relative_clearance(ctx, analysis, "clearance_fitted_mm",

@@ -55,16 +55,36 @@ static bool is_clearance_known(const fg_subject *subject) {
   return ((const fg_lot_bearing *)subject->object)->known;
 }
 
+static const double *list_angles(const fg_subject *subject, double *values, size_t *count) {
+  const fg_lot_bearing *bearing = subject->object;
+  (void)values;
+  *count = bearing->places;
+  return bearing->angle_deg;
+}
+
+static const double *list_clearances(const fg_subject *subject, double *values, size_t *count) {
+  const fg_lot_bearing *bearing = subject->object;
+  (void)values;
+  *count = bearing->places;
+  return bearing->clearance_mm;
+}
+
+static const double *list_clearance_u(const fg_subject *subject, double *values, size_t *count) {
+  const fg_lot_bearing *bearing = subject->object;
+  (void)values;
+  *count = bearing->places;
+  return bearing->u_clearance_mm;
+}
+
 static const fg_member bearing_rows[] = {
     {FG_STRING("name", fg_lot_bearing, name), .words = "by the manifest; null: assumed"},
     {FG_COUNT("number", fg_lot_bearing, number), .lowest = 1},
     {FG_LIST_BY("pads", find_pad, &pad_members), .options = FG_MEMBER_LIST_ON_LINE,
      .words = "labels of its foils; null: missing"},
-    {FG_NUMBERS_OF("angle_deg", fg_lot_bearing, angle_deg, places), .words = "of each place"},
-    {FG_NUMBERS_OF("clearance_mm", fg_lot_bearing, clearance_mm, places),
+    {FG_NUMBERS_BY("angle_deg", list_angles), .words = "of each place"},
+    {FG_NUMBERS_BY("clearance_mm", list_clearances),
      .words = "foils fitted into the sleeve; null: no value, or a crushed bump's"},
-    {FG_NUMBERS_OF("u_clearance_mm", fg_lot_bearing, u_clearance_mm, places),
-     .words = "standard uncertainty of each"},
+    {FG_NUMBERS_BY("u_clearance_mm", list_clearance_u), .words = "standard uncertainty of each"},
     {FG_VERDICT(fg_lot_bearing, decision.outcome.verdict)},
     {FG_JUDGEMENTS(fg_lot_bearing, decision),
      .words = "by the tolerances of a bearing: circularity_mm, clearance_min_mm (min_mm here), "
