@@ -151,6 +151,8 @@ static void join_differences(const grouping *by) {
 
 static fg_status compare_quantities(fg_context *ctx, grouping *by) {
   fg_lot_analysis *analysis = by->analysis;
+  free(analysis->differences); /* of an earlier comparison */
+  analysis->difference_count = 0;
   FG_TRY(fg_memory_allocate(ctx, analysis->quantity_count * by->pairs,
                             sizeof *analysis->differences, (void **)&analysis->differences));
   FG_TRY(
