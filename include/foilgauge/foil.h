@@ -277,8 +277,11 @@ typedef struct fg_beam_edge {
   double blur_mm;       /* of the scan, there */
   double row_mm;        /* height of a row of the scan; 0: not known */
   double u_mm_of_level; /* u of its place by the level of the edge */
+  double u_mm_of_next;  /* u by the blur of the cut's other side; the level's is apart from it */
   double split_mm; /* difference between its flanks and its core, beyond chance; towards the void */
-  double loss_share; /* share by which JPEG's steps raise the variance of the edge */
+  double loss_share;  /* share by which JPEG's steps raise the variance of the edge */
+  double shape_ratio; /* by which the levels and the blur, fitted to the same pixels, raise the
+                         variance of its mean place */
 } fg_beam_edge;
 
 typedef struct fg_beam {

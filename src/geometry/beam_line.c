@@ -255,6 +255,16 @@ static double sum_covariance(const double *weights, size_t n, const fg_beam_nois
   return fmax(sum, 0);
 }
 
+/* Variance of the mean place by the shape of an edge beside another one: few pixels tell its levels
+ * and its blur. */
+static double shape_variance(const fg_beam_line *line) {
+  double more = line->edge->shape_ratio - SHAPE_VARIANCE, squares = 0, n = (double)line->used;
+  if (!(more > 0)) return 0;
+  for (size_t i = 0; i < line->edge->count; i++)
+    if (!isnan(line->across[i])) squares += station_at(line, i)->u * station_at(line, i)->u;
+  return more * squares / (n * n);
+}
+
 fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
                                 const fg_beam_noise *noise, fg_beam_property ask, double along_mm,
                                 double *variance) {
@@ -265,9 +275,9 @@ fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
   for (size_t i = 0; i < line->edge->count; i++)
     weights[i] = weight_of(&a, i, ask, along_mm);
   bool good = !line->edge->round || weigh_apex(line, weights);
-  *variance = good ? SHAPE_VARIANCE * (1 + line->edge->loss_share) * line->spread *
-                         sum_covariance(weights, line->edge->count, noise)
-                   : NAN;
+  double by_noise = SHAPE_VARIANCE * sum_covariance(weights, line->edge->count, noise);
+  if (ask == FG_BEAM_PLACE) by_noise += shape_variance(line);
+  *variance = good ? (1 + line->edge->loss_share) * line->spread * by_noise : NAN;
   free(weights);
   return FG_OK;
 }

@@ -134,7 +134,7 @@ static double square(double x) {
 
 static fg_status find_length(fg_context *ctx, beam_work *w) {
   fg_beam *beam = w->beam;
-  double share[2], on_tip, variance, split = 0, uncertainty = 0, sum;
+  double share[2], on_tip, variance, split = 0, uncertainty = 0, next = 0, sum;
   double root = find_root(w, share), tip = find_tip(w, &on_tip);
   const fg_beam_edge *edges = beam->edges;
   beam->length_mm = tip - root;
@@ -147,11 +147,13 @@ static fg_status find_length(fg_context *ctx, beam_work *w) {
     sum += square(share[i]) * variance;
     split += share[i] * edges[side].split_mm;
     uncertainty += share[i] * edges[side].u_mm_of_level;
+    next += share[i] * edges[side].u_mm_of_next;
   }
   /* A move of the edges towards the void makes the beam longer at its tip and shorter at its root.
    */
   beam->u_length_mm = sqrt(sum + square(edges[FG_BEAM_TIP].split_mm - split) +
-                           square(edges[FG_BEAM_TIP].u_mm_of_level - uncertainty));
+                           square(edges[FG_BEAM_TIP].u_mm_of_level - uncertainty) +
+                           square(edges[FG_BEAM_TIP].u_mm_of_next - next));
   w->root = on_axis(w, root, 0);
   w->length = beam->length_mm;
   return FG_OK;
@@ -168,7 +170,7 @@ static void end_axis_at_edges(beam_work *w) {
 static fg_status find_width(fg_context *ctx, beam_work *w) {
   fg_beam *beam = w->beam;
   double at[2], sum = 0, slopes = 0, variance, left[2], root[2], tip[2], uncertainty = 0, split = 0,
-                on;
+                next = 0, on;
   for (int i = 0; i < 2; i++) {
     left[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), 0.5 * w->length, &at[i]);
     root[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), 0, &on);
@@ -179,10 +181,11 @@ static fg_status find_width(fg_context *ctx, beam_work *w) {
     FG_TRY(fg_beam_line_variance(ctx, line, &w->noise, FG_BEAM_SLOPE, 0, &variance));
     slopes += w->noise.long_range * variance;
     uncertainty += beam->edges[FG_BEAM_LEFT + i].u_mm_of_level;
+    next += beam->edges[FG_BEAM_LEFT + i].u_mm_of_next;
     split += beam->edges[FG_BEAM_LEFT + i].split_mm;
   }
   beam->width_mm = left[0] - left[1];
-  beam->u_width_mm = sqrt(sum + square(uncertainty) + square(split));
+  beam->u_width_mm = sqrt(sum + square(uncertainty) + square(next) + square(split));
   beam->taper_um_per_mm = 1000 * (root[0] - root[1] - tip[0] + tip[1]) / w->length;
   beam->u_taper_um_per_mm = 1000 * sqrt(slopes);
   beam->root_mm = on_axis(w, 0, 0);

@@ -11,6 +11,7 @@
 #include "geometry/level_uncertainty.h"
 #include "measure/loss.h"
 #include "vision/beam_find.h"
+#include "vision/line_end.h"
 #include "vision/rims.h"
 
 /* Min size of an object that is no dust, as a share of a beam's length. */
@@ -112,19 +113,19 @@ static double find_split(const fg_disc_edge *edge) {
 }
 
 /* Uncertainty of an edge's place by its level, px. */
-static double find_uncertainty(const flat_work *w, const fg_stretch *side,
-                               const fg_disc_edge *found, double overlap_px) {
-  double contrast = fabs(found->inside - found->outside), ratio = found->blur_px / side->radius;
+static double find_uncertainty(const flat_work *w, const fg_disc_edge *found) {
+  double curvature = found->circle.radius;
+  double contrast = fabs(found->inside - found->outside), ratio = fabs(found->blur_px / curvature);
   double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px);
   double level_px =
       fg_level_uncertainty(&w->m->design, &found->picture, 0) * fg_level_shift(found->blur_px);
   double tone_px = hypot(w->tone.gamma == 1 ? 0 : TONE_U_PX, level_px);
   double curved_px = CURVED_U * ratio * ratio * 0.5 * ratio * found->blur_px;
-  return hypot(hypot(found->level_u_px, loss_px), hypot(tone_px, overlap_px)) + curved_px;
+  return hypot(hypot(found->level_u_px, loss_px), tone_px) + curved_px;
 }
 
 static fg_status copy_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
-                           const fg_disc_edge *found, double u_px, fg_beam_edge *edge) {
+                           const fg_disc_edge *found, double overlap_px, fg_beam_edge *edge) {
   double mm = w->view.shape.um / 1000;
   const double origin[2] = {(double)w->origin_px[0] * w->view.shape.scale[0],
                             (double)w->origin_px[1] * w->view.shape.scale[1]};
@@ -144,7 +145,9 @@ static fg_status copy_edge(fg_context *ctx, const flat_work *w, const fg_stretch
   edge->blur_mm = found->blur_px * mm;
   edge->row_mm = w->view.shape.scale[1] * mm;
   edge->split_mm = find_split(found) * mm;
-  edge->u_mm_of_level = u_px * mm;
+  edge->u_mm_of_level = find_uncertainty(w, found) * mm;
+  edge->u_mm_of_next = overlap_px * mm;
+  edge->shape_ratio = found->shape_ratio;
   edge->loss_share = fg_loss_turn_variance(w->m->jpeg_quality);
   return FG_OK;
 }
@@ -157,11 +160,10 @@ static fg_point to_mm(const flat_work *w, fg_point p) {
 
 /* Corrects the apex of a round floor: blur along it moves the apex, and that is the blur of the
  * beam's long edges; its own blur was used before. */
-static void mend_curved(const flat_work *w, const fg_stretch *side, const fg_beam_edge *left,
-                        fg_disc_edge *found) {
-  double along_px = left->blur_mm * 1000 / w->view.shape.um;
-  if (isinf(side->radius) || !left->count) return;
-  double shift = (found->blur_px * found->blur_px - along_px * along_px) / (2 * side->radius);
+static void mend_curved(const flat_work *w, const fg_beam_edge *left, fg_disc_edge *found) {
+  double along_px = left->blur_mm * 1000 / w->view.shape.um, radius = -found->circle.radius;
+  if (isinf(radius) || !left->count) return;
+  double shift = (found->blur_px * found->blur_px - along_px * along_px) / (2 * radius);
   for (size_t i = 0; i < found->count; i++)
     found->stations[i].edge_px += (float)shift;
 }
@@ -183,20 +185,32 @@ static void u_linear(const flat_work *w, fg_disc_edge *edge) {
   if (fabs(log(w->bent_gamma)) > BENT_MIN) edge->picture.findings |= FG_PICTURE_TONE_CURVE;
 }
 
-static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
+/* Scanner and driver as a beam's edges before this one tell of them. */
+static fg_line_tone tone_beside(const flat_work *w, const fg_beam *beam,
+                                const fg_found_driver *driver) {
+  double px = 1000 / w->view.shape.um;
+  const fg_beam_edge *left = &beam->edges[FG_BEAM_LEFT], *tip = &beam->edges[FG_BEAM_TIP];
+  return (fg_line_tone){.tone = w->tone,
+                        .driver = driver,
+                        .blur_along = px * (tip->count ? tip : left)->blur_mm,
+                        .blur_across = px * left->blur_mm};
+}
+
+static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stretch *place,
                               const fg_found_driver *driver, fg_line_found *found, fg_beam *beam,
                               fg_beam_edge *edge) {
-  const fg_line_tone tone = {w->tone, driver};
+  const fg_line_tone tone = tone_beside(w, beam, driver);
+  fg_stretch end = *place, *side = &end;
   fg_disc_edge *at = &found->edge;
   *found = (fg_line_found){.next_px = INFINITY};
-  fg_status status = fg_line_edge_measure(ctx, &w->view, side, &tone, found);
+  fg_status status = fg_line_end_measure(ctx, &w->view, &tone, side, found);
   if (status == FG_OK) {
     double overlap_px = fg_line_edge_overlap(found->next_px, at->blur_px);
     if (overlap_px > NARROW_PX) beam->flags |= FG_BEAM_NARROW_CUT;
-    mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], at);
+    mend_curved(w, &beam->edges[FG_BEAM_LEFT], at);
     u_linear(w, at);
     fg_picture_merge(&beam->picture, &at->picture);
-    status = copy_edge(ctx, w, side, at, find_uncertainty(w, side, at, overlap_px), edge);
+    status = copy_edge(ctx, w, side, at, overlap_px, edge);
   }
   fg_disc_edge_free(at);
   return status == FG_ERR_NUMERIC ? FG_OK : status;

@@ -93,7 +93,8 @@ static bool cut_stretch(const fg_straight *line, fg_point from, fg_point to, dou
   b -= off_to;
   *stretch = (fg_stretch){{line->at.x + a * line->along.x, line->at.y + a * line->along.y},
                           {line->at.x + b * line->along.x, line->at.y + b * line->along.y},
-                          INFINITY};
+                          INFINITY,
+                          0};
   return b - a >= FG_STRETCH_MIN_PX;
 }
 

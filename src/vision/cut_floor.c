@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vision/line_end.h"
+
 /* Cosines of directions against the beam's side: across it, and back along it. */
 #define ACROSS_FROM 0.96
 #define ACROSS_TO   2.18
@@ -108,18 +110,30 @@ static fg_point place_out(const frame *f, double u, double v) {
                     l->at.y + t * l->along.y - v * l->along.x};
 }
 
-/* Mean of u over points whose v lies that far from the cut's middle; NaN without any. */
+/* Adds the part of a line of the rim whose v lies in a range: its width, and the integral of u. */
+static void add_depth(const double from[2], const double to[2], double low, double high,
+                      double sums[2]) {
+  double a = fmax(low, fmin(from[1], to[1])), b = fmin(high, fmax(from[1], to[1]));
+  if (!(b > a)) return;
+  double middle = (0.5 * (a + b) - from[1]) / (to[1] - from[1]);
+  sums[0] += b - a;
+  sums[1] += (b - a) * (from[0] + middle * (to[0] - from[0]));
+}
+
+/* Mean of u over the rim whose v lies that far from the cut's middle; NaN without any. A narrow cut
+ * has only a few points there. */
 static double mean_depth(const frame *f, double from, double to) {
   size_t n = fg_polygon_span(f->rim, f->path.first, f->path.last);
-  double sum = 0, used = 0, u, v;
+  double sums[2] = {0, 0}, before[2], here[2];
   for (size_t i = 0; i < n; i++) {
-    place_in(f, f->rim->points[(f->path.first + i) % f->rim->point_count], &u, &v);
-    double off = fabs(v / f->gap - 0.5);
-    if (off < from || off > to) continue;
-    sum += u;
-    used++;
+    place_in(f, f->rim->points[(f->path.first + i) % f->rim->point_count], &here[0], &here[1]);
+    for (int side = -1; i > 0 && side <= 1; side += 2) {
+      double near = f->gap * (0.5 + side * from), far = f->gap * (0.5 + side * to);
+      add_depth(before, here, fmin(near, far), fmax(near, far), sums);
+    }
+    memcpy(before, here, sizeof before);
   }
-  return used > 0 ? sum / used : NAN;
+  return sums[0] > 0 ? sums[1] / sums[0] : NAN;
 }
 
 /* The stretch between two places of the frame, in the rim's order. */
@@ -127,7 +141,8 @@ static fg_stretch stretch_of(const frame *f, double u0, double v0, double u1, do
                              double radius) {
   fg_point near = place_out(f, u0, v0), far = place_out(f, u1, v1);
   bool after = f->sign > 0;
-  return (fg_stretch){after ? near : far, after ? far : near, radius};
+  return (fg_stretch){after ? near : far, after ? far : near, radius,
+                      f->path.opposite ? 0.5 * f->gap : 0};
 }
 
 /* u = a + b v over the middle of the floor. */
@@ -171,6 +186,10 @@ static void place_round(const frame *f, fg_cut_floor *floor) {
   double x = 0.5 * (OUTER_TO + ROUND_SHARE) * gap, sagitta = fmax(top - side, 0.01 * gap);
   double radius = fmin(fmax(0.5 * (x * x + sagitta * sagitta) / sagitta, 0.4 * gap), 4 * gap);
   double across = fmin(radius * sin(ARC_RAD), ROUND_SHARE * gap);
+  if (f->path.opposite) { /* a start: the circle is found with the arc's stations */
+    radius = 0.5 * gap;
+    across = FG_END_SHARE * radius;
+  }
   double low = top - radius + sqrt(radius * radius - across * across);
   floor->corner = fmin(radius, 0.5 * gap);
   floor->place = place_out(f, top, 0.5 * gap);

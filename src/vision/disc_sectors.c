@@ -51,7 +51,8 @@ static void start_sector(const fg_disc_work *work, size_t s, unsigned held, fg_s
     *value_of(fit, FG_STEP_INSIDE + side) = 255;
     fit->held |= 1u << (FG_STEP_INSIDE + side) | 1u << (FG_STEP_SLOPE_IN + side);
   }
-  fit->values[FG_STEP_BLUR] = 1.2;
+  fit->values[FG_STEP_BLUR] = work->blur_px > 0 ? work->blur_px : 1.2;
+  if (work->blur_px > 0) fit->held |= 1u << FG_STEP_BLUR;
   fit->values[FG_STEP_GAMMA] = work->gamma;
 }
 

@@ -118,6 +118,13 @@ static size_t count_unknowns(const fg_disc_work *work, size_t good) {
   return good >= 24 ? 7 : good >= 14 ? 5 : 3;
 }
 
+static double typical_shape_ratio(const fg_disc_work *work, double *scratch) {
+  size_t n = 0;
+  for (size_t s = 0; s < work->ring.sector_count; s++)
+    if (work->sectors[s].good) scratch[n++] = work->sectors[s].shape_ratio;
+  return n ? fg_select(scratch, n, n / 2) : 1;
+}
+
 fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge) {
   size_t good = 0;
   double *scratch;
@@ -139,6 +146,7 @@ fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_dis
     if (c.value == FG_STEP_INSIDE) edge->inside = c.coefficients[0];
     if (c.value == FG_STEP_OUTSIDE) edge->outside = c.coefficients[0];
   }
+  edge->shape_ratio = typical_shape_ratio(work, scratch);
   free(scratch);
   return FG_OK;
 }

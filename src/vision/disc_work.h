@@ -30,6 +30,7 @@ typedef struct fg_disc_edge {
   size_t count;
   double inside, outside; /* levels, 8-bit counts */
   double blur_px, noise, gamma;
+  double shape_ratio;   /* see fg_step_fit; of the typical sector */
   double sector_rms_px; /* of the sectors' edges about the circle */
   fg_picture_state picture;
   double spread_px, asymmetry; /* vision/edge_spread.h */
@@ -60,6 +61,7 @@ typedef struct fg_disc_work {
   size_t bin_count;
   fg_step_fit *sectors; /* ring.sector_count */
   double gamma;
+  double blur_px;    /* as known; 0: it is fitted */
   bool linear;       /* the user states that counts are proportional to the light */
   fg_driver *driver; /* NULL: the power gamma of the light describes the driver fully; owned */
   fg_driver_tone *driver_tone;

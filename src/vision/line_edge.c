@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "vision/picture.h"
+#include "vision/round_end.h"
 
 /* Min number of sectors for a driver's model, so those of a short stretch are shorter. */
 enum { SECTORS_MAX = 24, SECTORS_WANTED = 10, STATIONS_MIN = 4, PLACES = 9 };
@@ -20,6 +21,8 @@ enum { SECTORS_MAX = 24, SECTORS_WANTED = 10, STATIONS_MIN = 4, PLACES = 9 };
 #define NEXT_EDGE_SHARE 0.45
 /* End of an arc's band, as a share of its radius. */
 #define RADIUS_SHARE 0.6
+/* End of the band at a cut's end, as a share of the place of its darkest or brightest light. */
+#define END_REACH 1.2
 /* Min reach for levels with slopes. */
 #define SLOPE_REACH_PX 10.0
 #define CONTRAST_MIN   6.0
@@ -34,6 +37,7 @@ typedef struct frame {
   fg_point from, along; /* of a straight one: its start and direction */
   fg_point centre;      /* of an arc */
   double radius, start, length;
+  const fg_round_end *end; /* NULL: pixels keep their distance from the stretch */
 } frame;
 
 double fg_stretch_length(const fg_stretch *s) {
@@ -85,6 +89,13 @@ static void band_place(const frame *f, double x, double y, double *along, double
   *outwards = f->radius - hypot(dx, dy);
 }
 
+/* Distance across of a pixel beside the end of a cut, by its light. */
+static double place_by_light(const frame *f, double x, double y) {
+  double dx = x - f->centre.x, dy = y - f->centre.y, r = hypot(dx, dy);
+  double off = atan2(dy, dx) - (f->start - 0.5 * f->length / f->radius);
+  return fg_round_end_distance(f->end, r * cos(off), r * sin(off));
+}
+
 /* Narrows [from, to] to the part with low <= at + rate x <= high. */
 static void clip_range(double at, double rate, double low, double high, double *from, double *to) {
   if (fabs(rate) < 1e-12) {
@@ -123,7 +134,9 @@ static fg_status collect_row(fg_context *ctx, const fg_disc_work *work, const fr
     double along, outwards;
     if (isnan(value)) continue;
     band_place(f, (double)x * scale[0], v, &along, &outwards);
-    if (!(along >= 0 && along < f->length) || fabs(outwards) > ring->reach_px) continue;
+    if (!(along >= 0 && along < f->length)) continue;
+    if (f->end) outwards = place_by_light(f, (double)x * scale[0], v);
+    if (fabs(outwards) > ring->reach_px) continue;
     size_t station = (size_t)(along / f->length * (double)ring->station_count);
     if (station >= ring->station_count) station = ring->station_count - 1;
     ring->pixels[ring->count++] = (fg_ring_pixel){(float)outwards, value, (int32_t)station};
@@ -171,11 +184,13 @@ static double next_edge(const fg_disc_work *work, const frame *f, double along, 
   return INFINITY;
 }
 
-/* Half of the band's width: the median over places of the room before the next edge. */
+/* Half of the band's width: the median over places of the room before the next edge. The light of a
+ * cut's end contains the cut's other side. */
 static double find_reach(const fg_disc_work *work, const frame *f, double middle, double *near) {
-  double reach = fmin(REACH_PX, RADIUS_SHARE * f->radius);
+  double void_px = f->end ? END_REACH * fg_round_end_distance(f->end, 0, 0) : INFINITY;
+  double reach = fmin(REACH_PX, f->end ? void_px : RADIUS_SHARE * f->radius);
   *near = INFINITY;
-  for (int side = -1; side <= 1; side += 2) {
+  for (int side = -1; side <= (f->end ? -1 : 1); side += 2) {
     double next[PLACES];
     for (int i = 0; i < PLACES; i++)
       next[i] = next_edge(work, f, f->length * (i + 0.5) / PLACES, side, middle);
@@ -249,9 +264,10 @@ static size_t count_sectors(double length) {
 }
 
 /* Collects the band with its profiles, and fits a step without slopes to each. */
-static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double middle,
-                           fg_disc_work *work, double *next_px) {
+static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, const fg_round_end *end,
+                           double middle, fg_disc_work *work, double *next_px) {
   frame f = frame_of(stretch);
+  f.end = end;
   fg_ring *ring = &work->ring;
   if (!(f.length >= STATIONS_MIN * STATION_PX))
     return fg_fail(ctx, FG_ERR_NUMERIC, "a side is too short");
@@ -277,7 +293,7 @@ fg_status fg_line_edge_tone(fg_context *ctx, const fg_line_view *view, const fg_
   fg_disc_work work = {.tiles = view->tiles, .shape = &view->shape, .gamma = 1};
   double next_px;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_band(ctx, stretch, view->middle, &work, &next_px));
+  FG_TRY_EXIT(open_band(ctx, stretch, NULL, view->middle, &work, &next_px));
   FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
 exit:
   fg_disc_work_free(&work);
@@ -308,7 +324,8 @@ static fg_status solve_band(fg_context *ctx, fg_disc_work *work, const fg_stretc
     FG_TRY(fg_disc_find_driver(ctx, work));
   }
   edge->gamma = work->gamma;
-  edge->circle = (fg_circle){.radius = -stretch->radius};
+  bool by_light = fg_line_edge_has_end(stretch, tone);
+  edge->circle = (fg_circle){.radius = by_light ? -INFINITY : -stretch->radius};
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
   FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
@@ -316,17 +333,28 @@ static fg_status solve_band(fg_context *ctx, fg_disc_work *work, const fg_stretc
   return fg_disc_solve(ctx, work, edge);
 }
 
+bool fg_line_edge_has_end(const fg_stretch *stretch, const fg_line_tone *tone) {
+  bool sharpened =
+      tone->driver && tone->driver->found && tone->driver->driver.values[FG_DRIVER_AMOUNT] != 0;
+  return isfinite(stretch->radius) && stretch->half_width > 0 && tone->blur_along > 0 &&
+         tone->blur_across > 0 && !sharpened;
+}
+
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
                                const fg_line_tone *tone, fg_line_found *found) {
+  const fg_round_end end = {stretch->radius, stretch->half_width, tone->blur_along,
+                            tone->blur_across};
+  const fg_round_end *by_light = fg_line_edge_has_end(stretch, tone) ? &end : NULL;
   fg_disc_work work = {.tiles = view->tiles,
                        .shape = &view->shape,
                        .gamma = tone->tone.gamma,
+                       .blur_px = by_light ? end.blur_along : 0,
                        .linear = tone->tone.linear};
   fg_disc_edge *edge = &found->edge;
   memset(edge, 0, sizeof *edge);
   edge->picture = fg_picture_unknown();
   edge->gamma = tone->tone.gamma;
-  fg_status status = open_band(ctx, stretch, view->middle, &work, &found->next_px);
+  fg_status status = open_band(ctx, stretch, by_light, view->middle, &work, &found->next_px);
   if (status == FG_OK) status = solve_band(ctx, &work, stretch, tone, edge);
   if (status == FG_OK) status = fg_picture_of_ring(ctx, &work, edge, &edge->picture);
   if (status == FG_OK && tone->tone.found > 0) {

@@ -12,10 +12,11 @@
 
 /* A stretch runs from one place to another, the material to its left where y points up (see
  * vision/rims.h). `radius` is that of an arc between the places, whose centre lies outside of the
- * material; INFINITY: a straight line. */
+ * material; INFINITY: a straight line. An arc that ends a cut lies in its middle; `half_width` is
+ * half of the cut's width, 0 where that is not known. */
 typedef struct fg_stretch {
   fg_point from, to;
-  double radius;
+  double radius, half_width;
 } fg_stretch;
 
 double fg_stretch_length(const fg_stretch *stretch);
@@ -39,6 +40,7 @@ typedef struct fg_line_tone {
   fg_tone tone;
   const fg_found_driver
       *driver; /* as found at a longer edge beside it; NULL: it is sought at this edge */
+  double blur_along, blur_across; /* of the edges across a cut's end and along it; 0: not known */
 } fg_line_tone;
 
 typedef struct fg_line_found {
@@ -46,6 +48,10 @@ typedef struct fg_line_found {
   double next_px;    /* distance of the next edge on either side; INFINITY: none is near */
   fg_found_driver driver;
 } fg_line_found;
+
+/* Returns true when the end of a cut is measured by its own light (vision/round_end.h), so that
+ * blur does not move it. An unsharp mask has no such light. */
+bool fg_line_edge_has_end(const fg_stretch *stretch, const fg_line_tone *tone);
 
 /* FG_ERR_NUMERIC when there is no edge. */
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,

@@ -81,6 +81,7 @@ static void finish_step_fit(const fg_profile_bin *bins, size_t count,
   fit->good = fit->good && fg_normal_solve(system, 0, x, inverse);
   for (int i = 0; i < FG_STEP_VALUES && fit->good; i++)
     fit->sd[i] = fit->held >> i & 1 ? 0 : fit->noise * sqrt(inverse[i][i]);
+  fit->shape_ratio = fit->good ? inverse[0][0] * system->matrix[0][0] : 1;
 }
 
 void fg_step_fit_model(const fg_profile_bin *bins, size_t count, fg_step_fit *fit) {

@@ -35,6 +35,7 @@ typedef struct fg_step_fit {
   double sd[FG_STEP_VALUES];     /* 0 for those that were held */
   unsigned held;                 /* bit i: values[i] stays as given */
   double noise;                  /* sd of one pixel, by the misfit */
+  double shape_ratio; /* of the edge's variance, to the one if nothing else were fitted */
   bool good;                     /* the fit converged to plausible values */
 } fg_step_fit;
 

@@ -43,19 +43,19 @@ def kinds(index):
     return ["comb", "slits", "comb", "slits"][index % 4], index % 4 < 2, index % 8 == 3
 
 
-def random_scan(rng, index, rough):
-    scan = {"dpi": [2400.0, 4800.0][index % 2], "turn": float(rng.uniform(-180, 180)), "light": bool(rng.integers(2)),
+def random_scan(rng, index, kind):
+    scan = {"dpi": 1200.0 if kind == "coarse" else [2400.0, 4800.0][index % 2], "turn": float(rng.uniform(-180, 180)), "light": bool(rng.integers(2)),
             "bits": int(rng.choice([8, 16])), "blur": 1.2, "noise": 2.0, "rough": 0.0, "length": 8.0}
-    if rough:
+    if kind == "rough":
         scan.update(blur=float(rng.uniform(1.0, 2.0)), noise=float(rng.uniform(2, 4)),
                     rough=float(rng.uniform(0.15, 0.3)), length=float(rng.uniform(5, 11)))
     return scan
 
 
-def by_numpy(rng, index, rough, folder):
+def by_numpy(rng, index, kind, folder):
     """A foil of the other renderer, and its truth."""
     layout, sharp, square = kinds(index)
-    scan, length, width = random_scan(rng, index, rough), rng.uniform(2.5, 3.5), rng.uniform(0.6, 0.9)
+    scan, length, width = random_scan(rng, index, kind), rng.uniform(2.5, 3.5), rng.uniform(0.6, 0.9)
     design = design_of(round(length, 3), round(width, 3))
     sizes = []
     for _ in range(COUNT):
@@ -75,10 +75,10 @@ def by_numpy(rng, index, rough, folder):
     return design, truth_of(design, sizes)
 
 
-def by_program(rng, index, rough, folder):
+def by_program(rng, index, kind, folder):
     """A foil of `foilgauge render`, and its truth."""
     layout, sharp, _ = kinds(index)
-    scan = random_scan(rng, index, rough)
+    scan = random_scan(rng, index, kind)
     design = design_of(round(rng.uniform(2.5, 3.5), 3), round(rng.uniform(0.6, 0.9), 3))
     beams = {"layout": layout, "pitch_mm": design["beam_width_mm"] + float(rng.uniform(1.1, 1.3)), "base_mm": 1.5,
              "shoulder_mm": 0.8, "corner_radius_mm": 0.001 if sharp else float(rng.uniform(0.03, 0.12)),
@@ -89,7 +89,7 @@ def by_program(rng, index, rough, folder):
         beams["root_radius_mm"] = 0.001 if sharp else float(rng.uniform(0.05, 0.2))
     scanner = {"dpi": scan["dpi"], "bits": scan["bits"], "blur_px": scan["blur"], "noise": scan["noise"],
                "background": 30 if scan["light"] else 215, "contrast": 175 if scan["light"] else -175}
-    if rough:
+    if scan["rough"]:
         um = 25400 / scan["dpi"]
         scanner["rough"] = {"edge_roughness_um": scan["rough"] * um, "correlation_um": scan["length"] * um}
     spec = {"schema": "foilgauge/render/1", "seed": int(rng.integers(1, 2**31)), "scanner": scanner,
@@ -133,11 +133,11 @@ def rows_of(true, found, keep):
     return rows
 
 
-def run(render, foils, rough, seed, folder, keep):
+def run(render, foils, kind, seed, folder, keep):
     rng, rows = np.random.default_rng(seed), []
     for index in range(foils):
-        design, true = render(rng, index, rough, folder)
-        name = f"{render.__name__} seed {seed} rough {rough} foil {index} {kinds(index)}" if keep else ""
+        design, true = render(rng, index, kind, folder)
+        name = f"{render.__name__} seed {seed} {kind} foil {index} {kinds(index)}" if keep else ""
         rows += rows_of(true, measure(design, folder), name)
         if keep and name:
             os.makedirs(keep, exist_ok=True)
@@ -162,7 +162,7 @@ HEADER = ["scans", "of", "unit", "beams", "not measured", "rms error", "bias", "
 TEXT = """# Accuracy on flat foils with beams
 
 `python3 tests/bench/accuracy_beams.py` writes this page. {version}; {foils} foils of {count} beams each per line and
-seed, seeds {seeds}; 2400 and 4800 dpi, any angle, light and dark, 8 and 16 bit. Half of the foils are combs (with
+seed, seeds {seeds}; 2400 and 4800 dpi, and 1200 dpi; any angle, light and dark, 8 and 16 bit. Half of the foils are combs (with
 shoulders and without), half are sheets with slits of 0.12 to 0.25 mm whose ends are round, or square in one of eight of
 numpy's; half have sharp corners, half corners of 0.03 to 0.12 mm, fillets and a taper of up to 30 µm. L is the length, w
 the width halfway, e_S the compliance against the design's (include/foilgauge/foil.h defines them). "program" is
@@ -177,7 +177,12 @@ Blur 1.2 px, noise 2 of a contrast of 175.
 
 Edges scatter by 0.15 to 0.3 px, correlated over 5 to 11 px; blur 1 to 2 px, noise 2 to 4.
 
-{rough}"""
+{rough}
+## At 1200 dpi
+
+As clean ones. The slits are 6 to 12 px wide, so that their round ends are few pixels.
+
+{coarse}"""
 
 
 def main():
@@ -189,17 +194,17 @@ def main():
     a = parser.parse_args()
     pages = {}
     with tempfile.TemporaryDirectory() as folder:
-        for rough in (False, True):
+        for kind in ("clean", "rough", "coarse"):
             lines, everything = [], []
             for render, label in ((by_program, "program"), (by_numpy, "numpy")):
                 rows = []
                 for seed in a.seeds:
-                    rows += run(render, a.foils, rough, seed, folder, a.show)
+                    rows += run(render, a.foils, kind, seed, folder, a.show)
                 everything += rows
                 lines += summary(label, rows)
-            pages[rough] = lib.table(HEADER, lines + summary("both", everything))
+            pages[kind] = lib.table(HEADER, lines + summary("both", everything))
     page = TEXT.format(version=lib.program_version(), foils=a.foils, count=COUNT, seeds=", ".join(map(str, a.seeds)),
-                       clean=pages[False], rough=pages[True])
+                       **pages)
     with open(a.o, "w", encoding="utf-8") as file:
         file.write(page)
     print(page)

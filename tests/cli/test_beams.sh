@@ -74,6 +74,12 @@ for gamma in $gammas; do
   seen gamma "[]" 1.0
 done
 seen gamma "['edge_profile', 'tone_curve']" 60 --tone linear
+# Ends of slits that are a few pixels wide: blur does not move them.
+for end in "0.2 -70 0.7" "0.2 5 0.7" "0.15 41 1.2"; do
+  set -- $end
+  sheet ends "$spread, \"layout\": \"slits\", \"kerf_mm\": $1" ', "contrast": -175, "background": 225, "noise": 1' $2
+  seen ends "[]" $3 --tone linear
+done
 sheet plain "$spread"
 seen plain "[]" 1.0 --tone linear
 sheet sharp "$spread" ', "unsharp_mask": {"amount_pct": 100}'

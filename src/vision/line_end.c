@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "vision/line_end.h"
+
+#include <math.h>
+
+#include "core/small_solve.h"
+
+enum { ROUNDS = 8, STATIONS_MIN = 4 };
+#define MOVED_PX 2e-4
+/* Range of the radius in half widths of the cut; beyond it an end is flat. */
+#define RADIUS_MIN 0.7
+#define RADIUS_MAX 8.0
+/* Half chord of the arc at a flat end, which may have corners, in half widths. */
+#define FLAT_SHARE 0.6
+
+/* Deviation of the stations from the arc towards the material: at its apex, and at its ends against
+ * that. */
+typedef struct arc_change {
+  double apex, ends;
+} arc_change;
+
+static double half_angle(const fg_stretch *s) {
+  return 0.5 * fg_stretch_length(s) / s->radius;
+}
+
+/* Finds the circle's deviation from the arc: at the direction f from the middle of the cut
+ * a + b cos f + c sin f. */
+static bool find_change(const fg_stretch *s, const fg_disc_edge *edge, arc_change *change) {
+  double half = half_angle(s), x[FG_SMALL_MAX] = {0};
+  fg_normal_equations system;
+  size_t used = 0;
+  fg_normal_clear(&system, 3);
+  for (size_t i = 0; i < edge->count; i++) {
+    const fg_disc_station *at = &edge->stations[i];
+    if (!(at->weight > 0)) continue;
+    double f = half * (2 * ((double)i + 0.5) / (double)edge->count - 1);
+    const double row[3] = {1, (1 - cos(f)) / (1 - cos(half)), sin(f)};
+    fg_normal_add(&system, row, -(double)at->edge_px, 1);
+    used++;
+  }
+  if (used < STATIONS_MIN || !fg_normal_solve(&system, 0, x, NULL)) return false;
+  *change = (arc_change){x[0], x[1]};
+  return true;
+}
+
+/* Radius of the arc through the moved apex and ends. */
+static double find_radius(const fg_stretch *s, const arc_change *change) {
+  double half = half_angle(s), flat = fmax(s->radius, RADIUS_MAX * s->half_width);
+  double end = s->radius + change->apex + change->ends, across = end * sin(half);
+  double drop = s->radius + change->apex - end * cos(half);
+  if (!(drop > 0.5 * across * across / flat)) return flat;
+  return fmax(0.5 * (across * across + drop * drop) / drop, RADIUS_MIN * s->half_width);
+}
+
+static double depth_of(double radius, double across) {
+  return radius - sqrt(radius * radius - across * across);
+}
+
+static void move_arc(fg_stretch *s, const arc_change *change) {
+  double chord = hypot(s->to.x - s->from.x, s->to.y - s->from.y), width = s->half_width;
+  double radius = find_radius(s, change),
+         flat = FLAT_SHARE + (FG_END_SHARE - FLAT_SHARE) * width / radius;
+  double across = fmin(FG_END_SHARE * radius, width * fmin(flat, FG_END_SHARE));
+  double deep = change->apex + depth_of(s->radius, 0.5 * chord) - depth_of(radius, across);
+  fg_point along = {(s->to.x - s->from.x) / chord, (s->to.y - s->from.y) / chord};
+  /* The material lies to the left, where y points up. */
+  fg_point middle = {0.5 * (s->from.x + s->to.x) - deep * along.y,
+                     0.5 * (s->from.y + s->to.y) + deep * along.x};
+  s->from = (fg_point){middle.x - across * along.x, middle.y - across * along.y};
+  s->to = (fg_point){middle.x + across * along.x, middle.y + across * along.y};
+  s->radius = radius;
+}
+
+fg_status fg_line_end_measure(fg_context *ctx, const fg_line_view *view, const fg_line_tone *tone,
+                              fg_stretch *stretch, fg_line_found *found) {
+  arc_change change;
+  FG_TRY(fg_line_edge_measure(ctx, view, stretch, tone, found));
+  if (!fg_line_edge_has_end(stretch, tone)) return FG_OK;
+  for (int round = 0; round < ROUNDS; round++) {
+    if (!find_change(stretch, &found->edge, &change)) return FG_OK;
+    if (fmax(fabs(change.apex), fabs(change.ends)) < MOVED_PX) return FG_OK;
+    move_arc(stretch, &change);
+    fg_disc_edge_free(&found->edge);
+    FG_TRY(fg_line_edge_measure(ctx, view, stretch, tone, found));
+  }
+  return FG_OK;
+}
