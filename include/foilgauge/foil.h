@@ -274,6 +274,7 @@ typedef struct fg_beam_edge {
   fg_disc_point *stations; /* in order, the material to the right as seen; owned */
   size_t count;
   bool round;           /* an arc about the apex of a floor */
+  double radius_mm;     /* of the arc, about */
   double blur_mm;       /* of the scan, there */
   double row_mm;        /* height of a row of the scan; 0: not known */
   double u_mm_of_level; /* u of its place by the level of the edge */

@@ -28,9 +28,9 @@ static double upwind_share(double x, double *slope) {
     *slope = 2 / (x * x);
     return 1 - 2 / x;
   }
-  double sinh_half = sinh(x / 2);
-  *slope = 2 / (x * x) - 0.5 / (sinh_half * sinh_half);
-  return 1 / tanh(x / 2) - 2 / x;
+  double grown = expm1(x); /* coth(x/2) = 1 + 2 / (e^x - 1) */
+  *slope = 2 / (x * x) - 2 * (1 + grown) / (grown * grown);
+  return 1 + 2 / grown - 2 / x;
 }
 
 /* F = L (q_a + q_b)/2 - L kappa(Pe) (q_b - q_a)/2 - P H³ (P_b - P_a)/d, q = P H, with means of P
@@ -57,14 +57,14 @@ static film_flux find_flux(const film_node *a, const film_node *b, double lambda
   return f;
 }
 
-static film_node find_node(const fg_film *film, const fg_film_case *at, const fg_film_state *state,
-                           size_t column, size_t j) {
+static film_node find_node(const fg_film *film, const fg_film_state *state, size_t column,
+                           double thickness, size_t j) {
   bool fixed = film->edge[column] || j == film->mesh.axial;
   return (film_node){.pressure_at = fixed ? -1 : film->base[column] + (int)j,
                      .deflection_at =
                          film->base[column] + (film->edge[column] ? 0 : (int)film->mesh.axial),
                      .pressure = state->pressure[column * film->nodes + j],
-                     .thickness = fg_film_thickness(film, at, state, column),
+                     .thickness = thickness,
                      .column = column};
 }
 
@@ -74,12 +74,14 @@ double fg_film_thickness(const fg_film *film, const fg_film_case *at, const fg_f
          state->place[1] * film->sine[column] + state->deflection[column];
 }
 
-static void add_entry(fg_context *ctx, fg_film *film, int row, int column, double value,
-                      double by_time) {
+static void add_entry(fg_context *ctx, fg_film *film, int row, int column, double value) {
   size_t place = fg_sparse_place(ctx, &film->sparse, row, column);
-  if (!film->matrix) return;
-  film->matrix[place] += value;
-  film->time[place] += by_time;
+  if (film->matrix) film->matrix[place] += value;
+}
+
+static void add_by_time(fg_context *ctx, fg_film *film, int row, int column, double value) {
+  size_t place = fg_sparse_place(ctx, &film->sparse, row, column);
+  if (film->matrix) film->time[place] += value;
 }
 
 /* Adds `sign` times the flux to the balance of a node. */
@@ -90,8 +92,8 @@ static void add_flux(fg_context *ctx, fg_film *film, const film_node *of, const 
   film->residual[row] += sign * f->value;
   for (int k = 0; k < 2; k++) {
     const film_node *n = ends[k];
-    if (n->pressure_at >= 0) add_entry(ctx, film, row, n->pressure_at, sign * f->by_pressure[k], 0);
-    add_entry(ctx, film, row, n->deflection_at, sign * f->by_thickness[k], 0);
+    if (n->pressure_at >= 0) add_entry(ctx, film, row, n->pressure_at, sign * f->by_pressure[k]);
+    add_entry(ctx, film, row, n->deflection_at, sign * f->by_thickness[k]);
     film->shift[0][row] -= sign * f->by_thickness[k] * film->cosine[n->column];
     film->shift[1][row] -= sign * f->by_thickness[k] * film->sine[n->column];
   }
@@ -110,8 +112,8 @@ static void add_volume(fg_context *ctx, fg_film *film, const film_node *n, doubl
                        double volume) {
   double by_time = 2 * lambda * volume;
   if (n->pressure_at < 0) return;
-  add_entry(ctx, film, n->pressure_at, n->pressure_at, 0, by_time * n->thickness);
-  add_entry(ctx, film, n->pressure_at, n->deflection_at, 0, by_time * n->pressure);
+  add_by_time(ctx, film, n->pressure_at, n->pressure_at, by_time * n->thickness);
+  add_by_time(ctx, film, n->pressure_at, n->deflection_at, by_time * n->pressure);
   film->shift_time[0][n->pressure_at] = -by_time * n->pressure * film->cosine[n->column];
   film->shift_time[1][n->pressure_at] = -by_time * n->pressure * film->sine[n->column];
 }
@@ -128,14 +130,16 @@ static void add_column_film(fg_context *ctx, fg_film *film, const fg_film_case *
                             const fg_film_state *state, size_t i) {
   size_t next;
   bool joined = find_next_column(film, i, &next);
+  double thickness = fg_film_thickness(film, at, state, i);
+  double thickness_next = joined ? fg_film_thickness(film, at, state, next) : NAN;
   for (size_t j = 0; j < film->mesh.axial; j++) {
-    film_node here = find_node(film, at, state, i, j);
+    film_node here = find_node(film, state, i, thickness, j);
     if (joined) {
-      film_node there = find_node(film, at, state, next, j);
+      film_node there = find_node(film, state, next, thickness_next, j);
       add_face(ctx, film, &here, &there, at->lambda, film->step, film->weight[j]);
     }
     if (film->edge[i]) continue;
-    film_node outward = find_node(film, at, state, i, j + 1);
+    film_node outward = find_node(film, state, i, thickness, j + 1);
     add_face(ctx, film, &here, &outward, 0, film->step_z, film->step);
     add_volume(ctx, film, &here, at->lambda, film->step * film->weight[j]);
   }
@@ -163,7 +167,7 @@ static void add_bending(fg_context *ctx, fg_film *film, const fg_film_case *at,
     if (weight[k] == 0) continue;
     size_t other = (i + film->columns + k - 2) % film->columns;
     int column = film->base[other] + (film->edge[other] ? 0 : (int)film->mesh.axial);
-    add_entry(ctx, film, row, column, scale * weight[k], 0);
+    add_entry(ctx, film, row, column, scale * weight[k]);
     film->residual[row] += scale * weight[k] * state->deflection[other];
   }
 }
@@ -179,7 +183,7 @@ static void add_foil(fg_context *ctx, fg_film *film, const fg_film_case *at,
   film->residual[row] += at->spring[i] * state->deflection[i];
   for (size_t j = 0; j < film->mesh.axial && !film->edge[i]; j++) {
     double share = at->yield[i] * film->weight[j] / film->mesh.half_length;
-    add_entry(ctx, film, row, film->base[i] + (int)j, -share, 0);
+    add_entry(ctx, film, row, film->base[i] + (int)j, -share);
     film->residual[row] -= share * (state->pressure[i * film->nodes + j] - 1);
   }
   if (at->bending > 0) add_bending(ctx, film, at, state, i, row);

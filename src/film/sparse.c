@@ -12,7 +12,7 @@ void fg_sparse_begin(fg_sparse *sparse, int size) {
   klu_defaults(&sparse->common);
 }
 
-static void record_addition(fg_context *ctx, fg_sparse *sparse, int row, int column) {
+void fg_sparse_record(fg_context *ctx, fg_sparse *sparse, int row, int column) {
   const int pair[2] = {row, column};
   for (size_t i = 0; i < 2 && sparse->status == FG_OK; i++) {
     void *block = sparse->added[i];
@@ -22,12 +22,6 @@ static void record_addition(fg_context *ctx, fg_sparse *sparse, int row, int col
     if (sparse->status == FG_OK) sparse->added[i][sparse->additions] = pair[i];
   }
   if (sparse->status == FG_OK) sparse->additions++;
-}
-
-size_t fg_sparse_place(fg_context *ctx, fg_sparse *sparse, int row, int column) {
-  if (sparse->symbolic) return (size_t)sparse->slot[sparse->next++];
-  record_addition(ctx, sparse, row, column);
-  return 0;
 }
 
 /* An addition's place in column order; its rank among all. */

@@ -33,8 +33,14 @@ void fg_sparse_begin(fg_sparse *sparse, int size);
 fg_status fg_sparse_finish(fg_context *ctx, fg_sparse *sparse);
 void fg_sparse_free(fg_sparse *sparse);
 
+void fg_sparse_record(fg_context *ctx, fg_sparse *sparse, int row, int column);
+
 /* Returns the place of the next addition among the values; 0 while the pattern is made. */
-size_t fg_sparse_place(fg_context *ctx, fg_sparse *sparse, int row, int column);
+static inline size_t fg_sparse_place(fg_context *ctx, fg_sparse *sparse, int row, int column) {
+  if (sparse->symbolic) return (size_t)sparse->slot[sparse->next++];
+  fg_sparse_record(ctx, sparse, row, column);
+  return 0;
+}
 
 /* Factorise, then solve `count` right-hand sides in place, column after column. FG_ERR_NUMERIC for
  * a singular matrix. */

@@ -112,23 +112,24 @@ static void fit_apex(fg_beam_line *line, apex *a, double *off) {
   line->along = (fg_point){-a->axis.y, a->axis.x};
 }
 
-static fg_status start_apex(fg_context *ctx, const fg_beam_line *line, fg_point axis, apex *a) {
-  size_t n = line->edge->count;
-  fg_point *points;
-  size_t used = 0;
-  FG_TRY(fg_memory_allocate(ctx, n, sizeof *points, (void **)&points));
-  for (size_t i = 0; i < n; i++)
-    if (station_at(line, i)->used) points[used++] = station_at(line, i)->at;
-  fg_status status = fg_circle_estimate(ctx, points, NULL, used, &a->circle);
+/* Starts with the circle's known radius, whose centre lies towards the tip: the stations of a flat
+ * end do not tell on which side it is. */
+static void start_apex(const fg_beam_line *line, fg_point axis, apex *a) {
+  double n = 0, x = 0, y = 0, radius = line->edge->radius_mm;
+  for (size_t i = 0; i < line->edge->count; i++) {
+    if (!station_at(line, i)->used) continue;
+    x += station_at(line, i)->at.x;
+    y += station_at(line, i)->at.y;
+    n++;
+  }
+  a->circle = (fg_circle){x / n + radius * axis.x, y / n + radius * axis.y, radius};
   a->axis = (fg_point){-axis.x, -axis.y};
-  free(points);
-  return status;
 }
 
 static fg_status fit_rounds(fg_context *ctx, fg_point axis, double *off, double *scratch,
                             fg_beam_line *line) {
   apex a;
-  if (line->edge->round) FG_TRY(start_apex(ctx, line, axis, &a));
+  if (line->edge->round) start_apex(line, axis, &a);
   for (int round = 0; round < ROUNDS; round++) {
     if (line->edge->round)
       fit_apex(line, &a, off);

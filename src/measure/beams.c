@@ -142,6 +142,7 @@ static fg_status copy_edge(fg_context *ctx, const flat_work *w, const fg_stretch
                                         .used = s->weight > 0};
   }
   edge->round = isfinite(side->radius);
+  edge->radius_mm = edge->round ? side->radius * mm : 0;
   edge->blur_mm = found->blur_px * mm;
   edge->row_mm = w->view.shape.scale[1] * mm;
   edge->split_mm = find_split(found) * mm;

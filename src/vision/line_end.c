@@ -9,9 +9,9 @@ enum { ROUNDS = 8, STATIONS_MIN = 4 };
 #define MOVED_PX 2e-4
 /* Range of the radius in half widths of the cut; beyond it an end is flat. */
 #define RADIUS_MIN 0.7
-#define RADIUS_MAX 8.0
+#define RADIUS_MAX 50.0
 /* Half chord of the arc at a flat end, which may have corners, in half widths. */
-#define FLAT_SHARE 0.6
+#define FLAT_SHARE 0.7
 
 /* Deviation of the stations from the arc towards the material: at its apex, and at its ends against
  * that. */
