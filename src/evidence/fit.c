@@ -8,8 +8,11 @@
 #include "core/memory.h"
 #include "evidence/unnamed.h"
 
-/* Gain from which a place is refined; points of a finer grid, and how often. */
+/* Gain from which a shape is refined; share of its gain that the best start may lack, and every
+ * refinement at most half of what the one before it did. */
 #define REFINE_GAIN 6.0
+#define START_LACKS 0.75
+/* Points of a finer grid, and how often. */
 enum { FINER = 9, FINER_LEVELS = 2, FINER_LEVELS_OF_TWO = 4 };
 /* Share by which the range of two shapes shrinks to either side. */
 #define SHRINKS_OF_TWO 0.2
@@ -32,30 +35,37 @@ typedef struct hit {
   int size; /* halvings of the row's */
 } hit;
 
+static hit best_of(const double *evidence, size_t sets) {
+  hit best = {.evidence = -INFINITY};
+  double sum = -INFINITY;
+  size_t count = sets * FG_EVIDENCE_SIZES;
+  for (size_t i = 0; i < count; i++) {
+    sum = add_logs(sum, evidence[i]);
+    if (!(evidence[i] > best.evidence)) continue;
+    best.evidence = evidence[i];
+    best.set = i / FG_EVIDENCE_SIZES;
+    best.size = (int)(i % FG_EVIDENCE_SIZES);
+  }
+  best.mass = sum - best.evidence - log((double)count);
+  for (size_t i = (size_t)best.size; i < count; i += FG_EVIDENCE_SIZES)
+    best.wide += exp(evidence[i] - best.evidence);
+  return best;
+}
+
 static fg_status score_option(fg_context *ctx, fg_evidence_search *s,
                               const fg_evidence_factor *factor, const fg_evidence_sets *sets,
                               const double *variance, hit *to) {
-  double *evidence = NULL, sum = -INFINITY;
-  size_t count = sets->count * FG_EVIDENCE_SIZES;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *evidence, (void **)&evidence));
+  double *evidence = NULL;
+  FG_TRY(fg_memory_allocate(ctx, sets->count, FG_EVIDENCE_SIZES * sizeof *evidence,
+                            (void **)&evidence));
   fg_status status = fg_evidence_score_sets(ctx, &s->problem, factor, sets, variance, evidence);
-  *to = (hit){.evidence = -INFINITY};
-  for (size_t i = 0; status == FG_OK && i < count; i++) {
-    sum = add_logs(sum, evidence[i]);
-    if (!(evidence[i] > to->evidence)) continue;
-    to->evidence = evidence[i];
-    to->set = i / FG_EVIDENCE_SIZES;
-    to->size = (int)(i % FG_EVIDENCE_SIZES);
-  }
-  to->mass = sum - to->evidence - log((double)count);
-  for (size_t i = (size_t)to->size; status == FG_OK && i < count; i += FG_EVIDENCE_SIZES)
-    to->wide += exp(evidence[i] - to->evidence);
+  if (status == FG_OK) *to = best_of(evidence, sets->count);
   free(evidence);
   return status;
 }
 
 static void set_size(const fg_evidence_search *s, fg_evidence_part *part, int size) {
-  fg_evidence_effect_variances(&s->prior, part->effect, part->count, part->variance);
+  fg_evidence_effect_variances(&s->request.prior, part->effect, part->count, part->variance);
   for (size_t c = 0; c < part->count; c++)
     part->variance[c] = ldexp(part->variance[c], -2 * size);
 }
@@ -108,29 +118,40 @@ static double log_share_of_cell(const fg_evidence_part *part, const shape_range 
   return fmin(0, log(w[0] * w[1] / sqrt(1 - correlation * correlation)));
 }
 
-/* Moves the shapes along a direction to the best ones of the range. */
-static fg_status refine_along(fg_context *ctx, fg_evidence_search *s,
-                              const fg_evidence_factor *factor, shape_range *range, int way,
-                              fg_evidence_part *part, double *evidence) {
-  const double *direction = directions[way];
-  fg_evidence_problem *p = &s->problem;
-  size_t from = p->count, each = part->count, first, count;
+/* Scores the shapes along a direction through the range. */
+static fg_status try_along(fg_context *ctx, const fg_evidence_search *s,
+                           const fg_evidence_factor *factor, const shape_range *range, int way,
+                           const fg_evidence_part *part, hit *found) {
+  const fg_evidence_problem *p = &s->problem;
   double variance[FG_EFFECT_COLUMNS_MAX], shape[FG_FIELD_SHAPES];
-  hit found;
-  if (!fg_evidence_has_room(p, (FINER + 1) * each)) return FG_OK;
-  fg_evidence_effect_variances(&s->prior, part->effect, each, variance);
+  double evidence[FINER * FG_EVIDENCE_SIZES];
+  fg_evidence_trial trial;
+  FG_TRY(fg_evidence_trial_open(ctx, p, part->effect, part->count, FINER, &trial));
   for (int i = 0; i < FINER; i++) {
-    move_shape(part, range, direction, (i + 1.0) / (FINER + 1), shape);
-    FG_TRY(fg_evidence_add_effect(ctx, p, part->effect, shape, &first, &count));
+    move_shape(part, range, directions[way], (i + 1.0) / (FINER + 1), shape);
+    fg_evidence_trial_add(p, shape, &trial);
   }
-  FG_TRY(score_option(ctx, s, factor, &(fg_evidence_sets){from, FINER, each}, variance, &found));
-  fg_evidence_drop(p, from);
-  note_width(range, way, &found, *evidence);
-  if (!(found.evidence > *evidence)) return FG_OK;
-  *evidence = found.evidence;
-  set_size(s, part, found.size);
-  move_shape(part, range, direction, ((double)found.set + 1) / (FINER + 1), shape);
-  memcpy(part->shape, shape, sizeof shape);
+  fg_evidence_effect_variances(&s->request.prior, part->effect, part->count, variance);
+  fg_status status = fg_evidence_score_trial(ctx, p, factor, &trial, variance, evidence);
+  if (status == FG_OK) *found = best_of(evidence, FINER);
+  fg_evidence_trial_close(&trial);
+  return status;
+}
+
+/* Moves the shapes along a direction to the best ones of the range. */
+static fg_status refine_along(fg_context *ctx, const fg_evidence_search *s,
+                              const fg_evidence_factor *factor, shape_range *range, int way,
+                              fg_evidence_extension *one) {
+  double shape[FG_FIELD_SHAPES];
+  hit found;
+  FG_TRY(try_along(ctx, s, factor, range, way, one->part, &found));
+  note_width(range, way, &found, one->evidence);
+  if (!(found.evidence > one->evidence)) return FG_OK;
+  one->evidence = found.evidence;
+  one->moved = true;
+  set_size(s, one->part, found.size);
+  move_shape(one->part, range, directions[way], ((double)found.set + 1) / (FINER + 1), shape);
+  memcpy(one->part->shape, shape, sizeof shape);
   return FG_OK;
 }
 
@@ -143,24 +164,6 @@ static void shrink_range(const fg_evidence_part *part, shape_range *range) {
     range->high[k] = part->shape[k] + reach;
   }
   range->cell /= part->effect->shapes > 1 ? 2 * SHRINKS_OF_TWO : 2.0 / (FINER + 1);
-}
-
-/* Moves the shapes to the best ones of their ranges; the columns of the best stay. */
-static fg_status refine_place(fg_context *ctx, fg_evidence_search *s,
-                              const fg_evidence_factor *factor, shape_range *range,
-                              fg_evidence_part *part, double *evidence) {
-  double before[FG_FIELD_SHAPES];
-  size_t shapes = part->effect->shapes, count;
-  memcpy(before, part->shape, sizeof before);
-  for (int level = 0; level < (shapes > 1 ? FINER_LEVELS_OF_TWO : FINER_LEVELS); level++) {
-    for (int k = 0; k < (shapes > 1 ? DIRECTIONS : 1); k++)
-      FG_TRY(refine_along(ctx, s, factor, range, k, part, evidence));
-    shrink_range(part, range);
-  }
-  part->log_prior += log_share_of_cell(part, range);
-  if (!memcmp(before, part->shape, sizeof before)) return FG_OK;
-  if (!fg_evidence_has_room(&s->problem, part->count)) return FG_OK;
-  return fg_evidence_add_effect(ctx, &s->problem, part->effect, part->shape, &part->first, &count);
 }
 
 /* Finds the range between the starts on both sides of start i; of a grid, its reach. */
@@ -192,14 +195,42 @@ fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *s,
   set_size(s, part, found.size);
   *evidence = found.evidence;
   part->first = option->first + found.set * option->each;
-  part->log_prior = log(s->prior.weight * FG_EVIDENCE_PRIOR) + found.mass;
+  part->log_prior = log(s->request.prior.weight * FG_EVIDENCE_PRIOR) + found.mass;
   if (option->seeded) part->log_prior -= log((double)effect->starts);
   if (fg_effect_is_unnamed(effect)) part->log_prior -= log(FG_UNNAMED_EFFECTS);
-  if (option->sets < 2) return FG_OK;
+  if (option->sets > 1) {
+    shape_range range; /* its middle is the shape */
+    find_range(s->problem.edge_fit, effect, found.set, part, &range);
+  }
+  return FG_OK;
+}
+
+/* Moves the shapes to the best ones of their ranges. */
+static fg_status refine_in(fg_context *ctx, const fg_evidence_search *s,
+                           const fg_evidence_factor *factor, double gain_max, shape_range *range,
+                           fg_evidence_extension *one) {
+  size_t shapes = one->part->effect->shapes;
+  for (int level = 0; level < (shapes > 1 ? FINER_LEVELS_OF_TWO : FINER_LEVELS); level++) {
+    double gain_min = fmax(REFINE_GAIN, (1 - ldexp(START_LACKS, -level)) * gain_max);
+    if (one->evidence < factor->evidence + gain_min) break;
+    for (int k = 0; k < (shapes > 1 ? DIRECTIONS : 1); k++)
+      FG_TRY(refine_along(ctx, s, factor, range, k, one));
+    shrink_range(one->part, range);
+  }
+  return FG_OK;
+}
+
+fg_status fg_evidence_refine_effect(fg_context *ctx, const fg_evidence_search *s,
+                                    const fg_evidence_factor *factor, double gain_max,
+                                    fg_evidence_extension *one) {
+  const fg_evidence_option *option = one->option;
   shape_range range;
-  find_range(s->problem.edge_fit, effect, found.set, part, &range);
-  if (found.evidence < factor->evidence + REFINE_GAIN) return FG_OK;
-  return refine_place(ctx, s, factor, &range, part, evidence);
+  if (option->sets < 2) return FG_OK;
+  find_range(s->problem.edge_fit, option->effect, (one->part->first - option->first) / option->each,
+             one->part, &range);
+  FG_TRY(refine_in(ctx, s, factor, gain_max, &range, one));
+  one->part->log_prior += log_share_of_cell(one->part, &range);
+  return FG_OK;
 }
 
 static size_t find_nearest_start(const fg_edge_fit *edge_fit, const fg_effect *effect,
@@ -223,7 +254,8 @@ fg_status fg_evidence_refit_effect(fg_context *ctx, fg_evidence_search *s,
                                    const fg_evidence_factor *factor, fg_evidence_part *part,
                                    double *evidence) {
   const fg_edge_fit *edge_fit = s->problem.edge_fit;
-  const double at = part->shape[0], log_prior = part->log_prior;
+  const double at = part->shape[0];
+  size_t count;
   shape_range range;
   hit found;
   set_size(s, part, 0);
@@ -231,15 +263,17 @@ fg_status fg_evidence_refit_effect(fg_context *ctx, fg_evidence_search *s,
                       part->variance, &found));
   set_size(s, part, found.size);
   *evidence = found.evidence;
-  if (!has_one_place(part->effect)) return FG_OK;
+  if (!has_one_place(part->effect) || !fg_evidence_has_room(&s->problem, part->count)) return FG_OK;
   find_range(edge_fit, part->effect, find_nearest_start(edge_fit, part->effect, at), part, &range);
   double reach = 0.25 * (range.high[0] - range.low[0]);
   part->shape[0] = at;
   range.low[0] = at - reach;
   range.high[0] = at + reach;
-  fg_status status = refine_place(ctx, s, factor, &range, part, evidence);
-  part->log_prior = log_prior;
-  return status;
+  fg_evidence_extension one = {.part = part, .evidence = *evidence};
+  FG_TRY(refine_in(ctx, s, factor, 0, &range, &one));
+  *evidence = one.evidence;
+  if (!one.moved) return FG_OK;
+  return fg_evidence_add_effect(ctx, &s->problem, part->effect, part->shape, &part->first, &count);
 }
 
 fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *s,
@@ -256,7 +290,7 @@ fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *s,
   fg_status status = fg_evidence_beside(ctx, &s->problem, factor, option->first, n, gram, right);
   for (size_t l = 0; status == FG_OK && option->rival->variances(edge_fit, l, variance); l++)
     for (int a = 0; a < FG_EVIDENCE_AMPLITUDES; a++) {
-      double size = fg_evidence_amplitude_um(&s->prior, a);
+      double size = fg_evidence_amplitude_um(&s->request.prior, a);
       for (size_t c = 0; c < n; c++)
         scaled[c] = size * size * variance[c];
       double value = fg_evidence_of(n, gram, right, scaled, work);
@@ -267,7 +301,8 @@ fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *s,
       memcpy(part->variance, scaled, n * sizeof *scaled);
     }
   *evidence = factor->evidence + best;
-  part->log_prior = log(s->prior.weight * FG_EVIDENCE_PRIOR) + sum - best - log((double)tried);
+  part->log_prior =
+      log(s->request.prior.weight * FG_EVIDENCE_PRIOR) + sum - best - log((double)tried);
   if (option->stretches) part->log_prior -= log((double)option->stretches);
   free(gram);
   return status;

@@ -6,9 +6,23 @@
 
 #include "evidence/options.h"
 
+/* A model with one option more. */
+typedef struct fg_evidence_extension {
+  const fg_evidence_option *option;
+  fg_evidence_part *part;
+  double evidence;
+  bool moved; /* its shapes are none of the starts: the problem has no columns of them */
+} fg_evidence_extension;
+
+/* Of an effect with shapes: the likeliest of its starts. */
 fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *search,
                                  const fg_evidence_factor *factor, const fg_evidence_option *option,
                                  fg_evidence_part *part, double *evidence);
+/* From there to the likeliest of all; what lacks more of `gain_max`, ln, than finer points can
+ * bring is left as it is. Several threads may refine extensions of one model. */
+fg_status fg_evidence_refine_effect(fg_context *ctx, const fg_evidence_search *search,
+                                    const fg_evidence_factor *factor, double gain_max,
+                                    fg_evidence_extension *extension);
 fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *search,
                                 const fg_evidence_factor *factor, const fg_evidence_option *option,
                                 fg_evidence_part *part, double *evidence);

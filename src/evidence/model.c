@@ -75,26 +75,47 @@ void fg_evidence_factor_close(fg_evidence_factor *f) {
   *f = (fg_evidence_factor){.count = 0};
 }
 
+/* Turns row i of `forward` from products with `count` columns into number i of the forward solution
+ * of each; the rows before are done. */
+static void solve_row(const fg_evidence_factor *f, size_t i, size_t count, double *forward) {
+  size_t n = f->count;
+  double *own = forward + i * count, own_root = f->root[i], pivot = 1 / f->lower[i * n + i];
+  for (size_t c = 0; c < count; c++)
+    own[c] *= own_root;
+  for (size_t k = 0; k < i; k++) {
+    double l = f->lower[i * n + k];
+    const double *before = forward + k * count;
+    for (size_t c = 0; c < count; c++)
+      own[c] -= l * before[c];
+  }
+  for (size_t c = 0; c < count; c++)
+    own[c] *= pivot;
+}
+
 /* Forward solutions of all columns [first, first + count), each beside the next: row i of
  * `forward` holds number i of each. */
 static fg_status solve_columns(fg_context *ctx, fg_evidence_problem *p, const fg_evidence_factor *f,
                                size_t first, size_t count, double **forward) {
-  size_t n = f->count;
-  FG_TRY(fg_memory_allocate(ctx, n * count + 1, sizeof **forward, (void **)forward));
-  for (size_t i = 0; i < n; i++) {
-    double *own = *forward + i * count, own_root = f->root[i];
-    fg_evidence_products(p, f->column[i], first, count, own);
+  FG_TRY(fg_memory_allocate(ctx, f->count * count + 1, sizeof **forward, (void **)forward));
+  for (size_t i = 0; i < f->count; i++) {
+    fg_evidence_products(p, f->column[i], first, count, *forward + i * count);
+    solve_row(f, i, count, *forward);
+  }
+  return FG_OK;
+}
+
+static fg_status solve_trial(fg_context *ctx, const fg_evidence_problem *p,
+                             const fg_evidence_factor *f, const fg_evidence_trial *trial,
+                             double **forward) {
+  size_t count = trial->count;
+  FG_TRY(fg_memory_allocate(ctx, f->count * count + 1, sizeof **forward, (void **)forward));
+  for (size_t i = 0; i < f->count; i++) {
+    size_t column = f->column[i];
+    const double *own = p->values + column * p->rows;
     for (size_t c = 0; c < count; c++)
-      own[c] *= own_root;
-    for (size_t k = 0; k < i; k++) {
-      double l = f->lower[i * n + k];
-      const double *before = *forward + k * count;
-      for (size_t c = 0; c < count; c++)
-        own[c] -= l * before[c];
-    }
-    double pivot = 1 / f->lower[i * n + i];
-    for (size_t c = 0; c < count; c++)
-      own[c] *= pivot;
+      (*forward)[i * count + c] =
+          fg_evidence_dot(own, p->span[column], trial->column[c].values, trial->column[c].span);
+    solve_row(f, i, count, *forward);
   }
   return FG_OK;
 }
@@ -134,33 +155,69 @@ fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *p, const fg_e
   return FG_OK;
 }
 
+enum { EACH_MAX = 24 };
+
+/* Products of one set's columns, with each other and with the residual. */
+typedef struct set_products {
+  size_t each;
+  double gram[EACH_MAX * EACH_MAX], right[EACH_MAX];
+} set_products;
+
+/* Scores set s of those whose forward solutions are given. */
+static void score_set(const fg_evidence_factor *f, const double *forward, size_t count, size_t s,
+                      set_products *of, const double *variance, double *evidence) {
+  double scaled[EACH_MAX], work[EACH_MAX * EACH_MAX + EACH_MAX];
+  size_t each = of->each;
+  for (size_t i = 0; i < f->count; i++) {
+    const double *own = forward + i * count + s * each;
+    for (size_t a = 0; a < each; a++) {
+      of->right[a] -= own[a] * f->solved[i];
+      for (size_t b = 0; b <= a; b++)
+        of->gram[a * each + b] -= own[a] * own[b];
+    }
+  }
+  for (int size = 0; size < FG_EVIDENCE_SIZES; size++) {
+    for (size_t a = 0; a < each; a++)
+      scaled[a] = ldexp(variance[a], -2 * size);
+    evidence[s * FG_EVIDENCE_SIZES + (size_t)size] =
+        f->evidence + fg_evidence_of(each, of->gram, of->right, scaled, work);
+  }
+}
+
 fg_status fg_evidence_score_sets(fg_context *ctx, fg_evidence_problem *p,
                                  const fg_evidence_factor *f, const fg_evidence_sets *sets,
                                  const double *variance, double *evidence) {
-  enum { EACH_MAX = 24 };
-  double *forward = NULL, gram[EACH_MAX * EACH_MAX], right[EACH_MAX], scaled[EACH_MAX];
-  double work[EACH_MAX * EACH_MAX + EACH_MAX];
+  double *forward = NULL;
+  set_products of = {.each = sets->each};
   size_t each = sets->each, count = sets->count * each;
   FG_TRY(solve_columns(ctx, p, f, sets->first, count, &forward));
   for (size_t s = 0; s < sets->count; s++) {
     size_t first = sets->first + s * each;
     for (size_t a = 0; a < each; a++) {
-      size_t at = s * each + a;
-      fg_evidence_products(p, first + a, first, a + 1, gram + a * each);
-      right[a] = p->right[first + a];
-      for (size_t i = 0; i < f->count; i++) {
-        const double *own = forward + i * count;
-        right[a] -= own[at] * f->solved[i];
-        for (size_t b = 0; b <= a; b++)
-          gram[a * each + b] -= own[at] * own[s * each + b];
-      }
+      fg_evidence_products(p, first + a, first, a + 1, of.gram + a * each);
+      of.right[a] = p->right[first + a];
     }
-    for (int size = 0; size < FG_EVIDENCE_SIZES; size++) {
-      for (size_t a = 0; a < each; a++)
-        scaled[a] = ldexp(variance[a], -2 * size);
-      evidence[s * FG_EVIDENCE_SIZES + (size_t)size] =
-          f->evidence + fg_evidence_of(each, gram, right, scaled, work);
+    score_set(f, forward, count, s, &of, variance, evidence);
+  }
+  free(forward);
+  return FG_OK;
+}
+
+fg_status fg_evidence_score_trial(fg_context *ctx, const fg_evidence_problem *p,
+                                  const fg_evidence_factor *f, const fg_evidence_trial *trial,
+                                  const double *variance, double *evidence) {
+  double *forward = NULL;
+  set_products of = {.each = trial->each};
+  FG_TRY(solve_trial(ctx, p, f, trial, &forward));
+  for (size_t s = 0; s * trial->each < trial->count; s++) {
+    const fg_evidence_column *own = trial->column + s * trial->each;
+    for (size_t a = 0; a < trial->each; a++) {
+      for (size_t b = 0; b <= a; b++)
+        of.gram[a * trial->each + b] =
+            fg_evidence_dot(own[a].values, own[a].span, own[b].values, own[b].span);
+      of.right[a] = own[a].right;
     }
+    score_set(f, forward, trial->count, s, &of, variance, evidence);
   }
   free(forward);
   return FG_OK;

@@ -10,6 +10,7 @@
 #include "effect/set.h"
 #include "evidence/problem.h"
 #include "evidence/rivals.h"
+#include "evidence/trial.h"
 
 enum { FG_EVIDENCE_PARTS = 6, FG_EVIDENCE_MODEL_COLUMNS = 700 };
 
@@ -68,10 +69,17 @@ typedef struct fg_evidence_option {
   size_t first, sets, each; /* columns */
 } fg_evidence_option;
 
+typedef struct fg_evidence_request {
+  const fg_effect_set
+      *seed; /* sets that are tried as they are: their shapes were fitted together */
+  size_t seeds;
+  fg_evidence_prior prior;
+  unsigned threads; /* 0: one for each core */
+} fg_evidence_request;
+
 typedef struct fg_evidence_search {
   fg_evidence_problem problem;
-  fg_evidence_prior prior;
-  const fg_effect_set *seed; /* the set that another search proposes */
+  fg_evidence_request request;
   fg_evidence_scatter scatter;
   fg_evidence_part *store; /* owned; FG_EVIDENCE_STORE */
   size_t stored;
@@ -99,6 +107,11 @@ enum { FG_EVIDENCE_SIZES = 7 };
 fg_status fg_evidence_score_sets(fg_context *ctx, fg_evidence_problem *problem,
                                  const fg_evidence_factor *factor, const fg_evidence_sets *sets,
                                  const double *variance, double *evidence);
+
+/* Scores shapes that are tried, as sets. */
+fg_status fg_evidence_score_trial(fg_context *ctx, const fg_evidence_problem *problem,
+                                  const fg_evidence_factor *factor, const fg_evidence_trial *trial,
+                                  const double *variance, double *evidence);
 
 /* Products of consecutive columns beside the factor's model: `gram` count × count, `right`. */
 fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *problem,

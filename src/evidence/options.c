@@ -6,10 +6,9 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "effect/columns.h"
 #include "evidence/unnamed.h"
-
-enum { OPTIONS_MAX = 200 };
 
 static bool is_power(const fg_effect *effect) {
   return effect->polynomial != FG_EFFECT_NO_POLYNOMIAL;
@@ -48,10 +47,30 @@ fg_status fg_evidence_add_effect(fg_context *ctx, fg_evidence_problem *p, const 
 }
 
 static fg_evidence_option *new_option(fg_evidence_search *s) {
-  if (s->option_count == OPTIONS_MAX) return NULL;
+  if (s->option_count == FG_EVIDENCE_OPTIONS) return NULL;
   fg_evidence_option *option = &s->options[s->option_count++];
   *option = (fg_evidence_option){.sets = 1};
   return option;
+}
+
+/* Columns of an option's starts. */
+typedef struct starts {
+  fg_evidence_problem *problem;
+  const fg_evidence_option *option;
+} starts;
+
+static fg_status make_start(fg_context *ctx, void *shared, size_t item) {
+  const starts *all = shared;
+  const fg_evidence_option *option = all->option;
+  fg_evidence_trial trial;
+  double shape[FG_FIELD_SHAPES], reach[FG_FIELD_SHAPES];
+  FG_TRY(fg_evidence_trial_open(ctx, all->problem, option->effect, option->each, 1, &trial));
+  fg_evidence_find_start(all->problem->edge_fit, option->effect, item, shape, reach);
+  fg_evidence_trial_add(all->problem, shape, &trial);
+  for (size_t c = 0; c < option->each; c++)
+    fg_evidence_put(all->problem, option->first + item * option->each + c, &trial.column[c]);
+  fg_evidence_trial_close(&trial);
+  return FG_OK;
 }
 
 /* An effect over its starting shapes. */
@@ -64,13 +83,10 @@ static fg_status add_shaped(fg_context *ctx, const fg_effect *effect, fg_evidenc
   option->effect = effect;
   option->first = p->count;
   option->sets = effect->starts;
-  for (size_t i = 0; i < effect->starts; i++) {
-    size_t first;
-    double shape[FG_FIELD_SHAPES], reach[FG_FIELD_SHAPES];
-    fg_evidence_find_start(p->edge_fit, effect, i, shape, reach);
-    FG_TRY(fg_evidence_add_effect(ctx, p, effect, shape, &first, &option->each));
-  }
-  return FG_OK;
+  option->each = columns;
+  p->count += effect->starts * columns;
+  starts all = {p, option};
+  return fg_parallel_run(ctx, s->request.threads, effect->starts, make_start, &all);
 }
 
 static fg_status add_plain(fg_context *ctx, const fg_effect *effect, const size_t powers[2],
@@ -103,10 +119,18 @@ static fg_status add_effects(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
+static bool is_seeded(const fg_evidence_search *s, const fg_effect_found *as) {
+  for (size_t o = 0; o < s->option_count; o++)
+    if (s->options[o].effect == as->kind && s->options[o].seeded &&
+        !memcmp(s->options[o].shape, as->shape, sizeof as->shape))
+      return true;
+  return false;
+}
+
 static fg_status add_seeds(fg_context *ctx, const fg_effect_set *seed, fg_evidence_search *s) {
   for (size_t e = 0; e < seed->count; e++) {
     const fg_effect_found *from = &seed->effects[e];
-    if (!from->kind->starts) continue;
+    if (!from->kind->starts || is_seeded(s, from)) continue;
     fg_evidence_option *option = new_option(s);
     if (!option) return FG_OK;
     option->effect = from->kind;
@@ -270,9 +294,8 @@ static fg_status add_form_errors(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
-fg_status fg_evidence_list_options(fg_context *ctx, const fg_effect_set *seed,
-                                   const double *jacobian, fg_evidence_search *s) {
-  FG_TRY(fg_memory_allocate(ctx, OPTIONS_MAX, sizeof *s->options, (void **)&s->options));
+fg_status fg_evidence_list_options(fg_context *ctx, const double *jacobian, fg_evidence_search *s) {
+  FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_OPTIONS, sizeof *s->options, (void **)&s->options));
   FG_TRY(s->problem.edge_fit->discs ? add_form_errors(ctx, s) : add_scatter(ctx, jacobian, s));
   FG_TRY(add_rivals(ctx, s));
   FG_TRY(add_effects(ctx, s));
@@ -280,5 +303,7 @@ fg_status fg_evidence_list_options(fg_context *ctx, const fg_effect_set *seed,
     if (!has_name(s->problem.edge_fit, effect->id, 0) &&
         fg_unnamed_shows(effect, s->problem.edge_fit))
       FG_TRY(add_shaped(ctx, effect, s));
-  return add_seeds(ctx, seed, s);
+  for (size_t k = 0; k < s->request.seeds; k++)
+    FG_TRY(add_seeds(ctx, &s->request.seed[k], s));
+  return FG_OK;
 }

@@ -10,9 +10,11 @@
 /* Prior probability of each cause, named or not: about one of them is expected in a scan. */
 #define FG_EVIDENCE_PRIOR 0.03
 
+enum { FG_EVIDENCE_OPTIONS = 200 };
+
 /* Lists the options and adds their columns, those of the bumps' scatter first. */
-fg_status fg_evidence_list_options(fg_context *ctx, const fg_effect_set *seed,
-                                   const double *jacobian, fg_evidence_search *search);
+fg_status fg_evidence_list_options(fg_context *ctx, const double *jacobian,
+                                   fg_evidence_search *search);
 
 /* Adds the columns of an effect with this shape; returns the index of the first. */
 fg_status fg_evidence_add_effect(fg_context *ctx, fg_evidence_problem *problem,

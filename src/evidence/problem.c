@@ -67,12 +67,13 @@ static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
   p->large = linear2 * alike > LARGE_SHARE * p->noise_um * p->noise_um;
 }
 
-static void whiten_rows(fg_evidence_problem *p, const double *values, double *out) {
+static void whiten_rows(const fg_evidence_problem *p, const double *values, double *white,
+                        double *out) {
   for (size_t i = 0; i < p->edge_fit->row_count; i++)
-    p->white[i] = fg_edge_fit_root_weight(&p->edge_fit->rows[i]) * values[i] / p->noise_um;
-  fg_whitening_apply(&p->whitening, p->white);
+    white[i] = fg_edge_fit_root_weight(&p->edge_fit->rows[i]) * values[i] / p->noise_um;
+  fg_whitening_apply(&p->whitening, white);
   for (size_t k = 0; k < p->rows; k++)
-    out[k] = p->white[p->row[k]];
+    out[k] = white[p->row[k]];
 }
 
 static fg_evidence_span span_of(const double *values, size_t rows) {
@@ -84,8 +85,8 @@ static fg_evidence_span span_of(const double *values, size_t rows) {
   return span;
 }
 
-static double dot_in_spans(const double *a, fg_evidence_span of_a, const double *b,
-                           fg_evidence_span of_b) {
+double fg_evidence_dot(const double *a, fg_evidence_span of_a, const double *b,
+                       fg_evidence_span of_b) {
   size_t first = of_a.first > of_b.first ? of_a.first : of_b.first;
   size_t last = of_a.last < of_b.last ? of_a.last : of_b.last;
   return first < last ? fg_dot_in_lanes(a + first, b + first, last - first) : 0;
@@ -114,7 +115,7 @@ static void add_direction(fg_evidence_problem *p, const double *direction, const
     for (size_t i = 0; direction[a] != 0 && i < rows; i++)
       column[i] += direction[a] * jacobian[a * rows + i];
   double *to = p->basis + p->rank * p->rows, *numbers = p->directions + p->rank * parameters;
-  whiten_rows(p, column, to);
+  whiten_rows(p, column, p->white, to);
   double whole = fg_dot_in_lanes(to, to, p->rows), *along = p->residual_along;
   take_flat_out(p, to, along);
   double left = fg_dot_in_lanes(to, to, p->rows);
@@ -197,7 +198,7 @@ fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const d
   FG_TRY_EXIT(fg_whitening_open(ctx, edge_fit, &p->whitening));
   find_noise_um(p, residual_um);
   FG_TRY_EXIT(find_flat_directions(ctx, p, jacobian));
-  whiten_rows(p, residual_um, p->residual);
+  whiten_rows(p, residual_um, p->white, p->residual);
   take_flat_out(p, p->residual, p->residual_along);
 exit:
   if (status != FG_OK) fg_evidence_close(p);
@@ -243,12 +244,27 @@ void fg_evidence_close(fg_evidence_problem *p) {
   *p = (fg_evidence_problem){.edge_fit = NULL};
 }
 
+void fg_evidence_make(const fg_evidence_problem *p, const double *values, double *white,
+                      fg_evidence_column *column) {
+  whiten_rows(p, values, white, column->values);
+  take_flat_out(p, column->values, column->along);
+  column->span = span_of(column->values, p->rows);
+  column->right = fg_dot_in_lanes(column->values, p->residual, p->rows);
+}
+
+void fg_evidence_put(fg_evidence_problem *p, size_t at, const fg_evidence_column *column) {
+  memcpy(p->values + at * p->rows, column->values, p->rows * sizeof *p->values);
+  memcpy(p->along + at * p->rank, column->along, p->rank * sizeof *p->along);
+  p->span[at] = column->span;
+  p->right[at] = column->right;
+}
+
 size_t fg_evidence_add(fg_evidence_problem *p, const double *values) {
-  double *to = p->values + p->count * p->rows;
-  whiten_rows(p, values, to);
-  take_flat_out(p, to, p->along + p->count * p->rank);
-  p->span[p->count] = span_of(to, p->rows);
-  p->right[p->count] = fg_dot_in_lanes(to, p->residual, p->rows);
+  fg_evidence_column column = {.values = p->values + p->count * p->rows,
+                               .along = p->along + p->count * p->rank};
+  fg_evidence_make(p, values, p->white, &column);
+  p->span[p->count] = column.span;
+  p->right[p->count] = column.right;
   return p->count++;
 }
 
@@ -258,18 +274,6 @@ void fg_evidence_put_back(fg_evidence_problem *p, size_t column, double amplitud
     p->residual[i] -= amplitude * values[i];
   for (size_t c = 0; c < p->count; c++)
     p->right[c] = fg_dot_in_lanes(p->values + c * p->rows, p->residual, p->rows);
-}
-
-void fg_evidence_drop(fg_evidence_problem *p, size_t from) {
-  for (size_t c = 0; c < p->count; c++) {
-    if (c >= from) {
-      free(p->gram[c]);
-      p->gram[c] = NULL;
-    }
-    for (size_t k = from; p->gram[c] && k < p->count; k++)
-      p->gram[c][k] = NAN;
-  }
-  p->count = from;
 }
 
 void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, size_t count,
@@ -283,7 +287,7 @@ void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, s
     double value = known ? known[c] : NAN;
     if (isnan(value) && p->gram[c]) value = p->gram[c][column];
     if (isnan(value))
-      value = dot_in_spans(own, p->span[column], p->values + c * p->rows, p->span[c]);
+      value = fg_evidence_dot(own, p->span[column], p->values + c * p->rows, p->span[c]);
     if (known) known[c] = value;
     into[c - first] = value;
   }

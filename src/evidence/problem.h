@@ -9,7 +9,7 @@
 #include "effect/effect.h"
 #include "rows/scatter.h"
 
-enum { FG_EVIDENCE_COLUMNS = 5200 };
+enum { FG_EVIDENCE_COLUMNS = 6000 };
 
 /* Rows [first, last) outside of which a column is 0: it may move one bump or one disc. */
 typedef struct fg_evidence_span {
@@ -49,6 +49,20 @@ void fg_evidence_close(fg_evidence_problem *problem);
 /* Changes the noise of all rows. */
 void fg_evidence_rescale(fg_evidence_problem *problem, double noise_um);
 
+/* A column beside the flat directions: `values` (rows) and `along` (rank) are the caller's. */
+typedef struct fg_evidence_column {
+  double *values, *along, right;
+  fg_evidence_span span;
+} fg_evidence_column;
+
+/* Makes a column of values as fg_evidence_add has them; `white`: all rows, for work. */
+void fg_evidence_make(const fg_evidence_problem *problem, const double *values, double *white,
+                      fg_evidence_column *column);
+/* Copies a column to a place of the problem's. */
+void fg_evidence_put(fg_evidence_problem *problem, size_t at, const fg_evidence_column *column);
+double fg_evidence_dot(const double *a, fg_evidence_span of_a, const double *b,
+                       fg_evidence_span of_b);
+
 /* Appends a column, um along the normal per unit, one value per row of the edge fit; returns its
  * index. The caller has seen that there is room (fg_evidence_has_room). */
 size_t fg_evidence_add(fg_evidence_problem *problem, const double *values);
@@ -57,8 +71,6 @@ static inline bool fg_evidence_has_room(const fg_evidence_problem *problem, size
 }
 /* Measures a column's amplitude from another zero: it was `amplitude` above it. */
 void fg_evidence_put_back(fg_evidence_problem *problem, size_t column, double amplitude);
-/* Forgets the columns from one on. */
-void fg_evidence_drop(fg_evidence_problem *problem, size_t from);
 /* Fills `into` with the products of a column with columns [first, first + count). */
 void fg_evidence_products(fg_evidence_problem *problem, size_t column, size_t first, size_t count,
                           double *into);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "evidence/fit.h"
 #include "evidence/refit.h"
 #include "evidence/unnamed.h"
@@ -18,6 +19,8 @@ enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 2, ROUNDS =
  * and whose effects are fitted together. */
 enum { SHORTENED = 16, SCATTERED = 24, REFITTED = 12 };
 enum { COPIES_MAX = 3 };
+/* Sets whose parts are exchanged; their rests without one part, at most; how often. */
+enum { EXCHANGED = 4, EXCHANGES = 8, EXCHANGE_ROUNDS = 2 };
 
 /* Scatter of bumps that is tried: of their height, of their radius as thousandths of it, along the
  * foil. */
@@ -138,25 +141,69 @@ static void keep_model(fg_evidence_search *s, const fg_evidence_model *model) {
   if (s->count < FG_EVIDENCE_MODELS) s->models[s->count++] = *model;
 }
 
-static fg_status extend_model(fg_context *ctx, fg_evidence_search *s,
-                              const fg_evidence_model *from) {
-  fg_evidence_factor factor;
-  fg_status status = FG_OK;
-  FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, from, &factor));
+/* Adds every option to a model, of `named` those with a name alone. */
+static fg_status list_extensions(fg_context *ctx, fg_evidence_search *s,
+                                 const fg_evidence_factor *factor, const fg_evidence_model *from,
+                                 bool named, fg_evidence_extension *list, size_t *count) {
   for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
     const fg_evidence_option *option = &s->options[o];
-    fg_evidence_part *part = &s->store[s->stored];
-    fg_evidence_model model = *from;
-    if (!may_join(from, option)) continue;
-    FG_TRY_EXIT(option->rival
-                    ? fg_evidence_fit_rival(ctx, s, &factor, option, part, &model.evidence)
-                    : fg_evidence_fit_effect(ctx, s, &factor, option, part, &model.evidence));
+    fg_evidence_extension *one = &list[*count];
+    if (!may_join(from, option) || (named && !bears_name(option))) continue;
+    *one = (fg_evidence_extension){.option = option, .part = &s->store[s->stored]};
+    FG_TRY(option->rival
+               ? fg_evidence_fit_rival(ctx, s, factor, option, one->part, &one->evidence)
+               : fg_evidence_fit_effect(ctx, s, factor, option, one->part, &one->evidence));
     s->stored++;
-    model.part[model.parts++] = part;
-    model.named += bears_name(option);
-    set_score(s, &model);
-    keep_model(s, &model);
+    ++*count;
   }
+  return FG_OK;
+}
+
+/* Extensions of one model whose shapes are refined. */
+typedef struct refinement {
+  const fg_evidence_search *search;
+  const fg_evidence_factor *factor;
+  double gain_max;
+  fg_evidence_extension *list;
+} refinement;
+
+static fg_status refine_one(fg_context *ctx, void *shared, size_t item) {
+  const refinement *r = shared;
+  if (!r->list[item].option->effect) return FG_OK;
+  return fg_evidence_refine_effect(ctx, r->search, r->factor, r->gain_max, &r->list[item]);
+}
+
+static fg_status keep_extension(fg_context *ctx, fg_evidence_search *s,
+                                const fg_evidence_model *from, const fg_evidence_extension *one) {
+  fg_evidence_model model = *from;
+  size_t count;
+  if (one->moved) {
+    if (!fg_evidence_has_room(&s->problem, one->part->count)) return FG_OK;
+    FG_TRY(fg_evidence_add_effect(ctx, &s->problem, one->part->effect, one->part->shape,
+                                  &one->part->first, &count));
+  }
+  model.evidence = one->evidence;
+  model.part[model.parts++] = one->part;
+  model.named += bears_name(one->option);
+  set_score(s, &model);
+  keep_model(s, &model);
+  return FG_OK;
+}
+
+static fg_status extend_model(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model *from,
+                              bool named) {
+  fg_evidence_extension list[FG_EVIDENCE_OPTIONS];
+  fg_evidence_factor factor;
+  refinement refined = {.search = s, .factor = &factor, .list = list};
+  fg_status status = FG_OK;
+  size_t count = 0;
+  FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, from, &factor));
+  FG_TRY_EXIT(list_extensions(ctx, s, &factor, from, named, list, &count));
+  for (size_t i = 0; i < count; i++)
+    refined.gain_max = fmax(refined.gain_max, list[i].evidence - factor.evidence);
+  FG_TRY_EXIT(fg_parallel_run(ctx, s->request.threads, count, refine_one, &refined));
+  for (size_t i = 0; i < count; i++)
+    FG_TRY_EXIT(keep_extension(ctx, s, from, &list[i]));
 exit:
   fg_evidence_factor_close(&factor);
   return status;
@@ -172,13 +219,13 @@ static const fg_evidence_option *find_option(const fg_evidence_search *s,
   return NULL;
 }
 
-/* The set that another search proposes is a model, too, with its shapes: they were fitted together.
- * Effects added one by one do not reach all sets: what stands for two of them leads each alone. The
- * first of them were sized beside what the others explain. */
-static fg_status propose_seed(fg_context *ctx, fg_evidence_search *s) {
+/* Effects added one by one do not reach all sets: what stands for two of them leads each alone. The
+ * first of a set's were sized beside what the others explain: `together` fits them anew. */
+static fg_status propose_set(fg_context *ctx, const fg_effect_set *set, bool together,
+                             fg_evidence_search *s) {
   fg_evidence_model model = s->models[0];
-  for (size_t e = 0; e < s->seed->count; e++) {
-    const fg_evidence_option *option = find_option(s, &s->seed->effects[e]);
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_evidence_option *option = find_option(s, &set->effects[e]);
     fg_evidence_part *part = &s->store[s->stored];
     fg_evidence_factor factor;
     if (!option || model.parts == FG_EVIDENCE_PARTS || s->stored == FG_EVIDENCE_STORE) return FG_OK;
@@ -191,7 +238,7 @@ static fg_status propose_seed(fg_context *ctx, fg_evidence_search *s) {
     model.named++;
   }
   if (!model.parts) return FG_OK;
-  for (int turn = 0; turn < 2; turn++) {
+  for (int turn = 0; together && turn < 2; turn++) {
     FG_TRY(fg_evidence_refit_model(ctx, s, &model));
     FG_TRY(find_scatter(ctx, s, &model));
   }
@@ -237,11 +284,53 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
       FG_TRY(find_scatter(ctx, s, &model));
       set_score(s, &model);
       s->models[front[k]] = model;
-      FG_TRY(extend_model(ctx, s, &model));
+      FG_TRY(extend_model(ctx, s, &model, false));
     }
     qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
     if (parts && s->models[1].score <= before + 1) break;
   }
+  return FG_OK;
+}
+
+/* Fills a model without one of its parts. */
+static void leave_out(const fg_evidence_model *model, size_t k, fg_evidence_model *shorter) {
+  const fg_effect *effect = model->part[k]->effect;
+  *shorter = *model;
+  shorter->parts--;
+  shorter->named -= effect && !fg_effect_is_unnamed(effect);
+  memmove(shorter->part + k, shorter->part + k + 1, (shorter->parts - k) * sizeof *shorter->part);
+}
+
+static bool same_shapes(const fg_evidence_model *a, const fg_evidence_model *b) {
+  if (!same_parts(a, b)) return false;
+  for (size_t i = 0; i < a->parts; i++) {
+    size_t k = 0;
+    while (k < b->parts && memcmp(a->part[i]->shape, b->part[k]->shape, sizeof a->part[i]->shape))
+      k++;
+    if (k == b->parts) return false;
+  }
+  return true;
+}
+
+/* Exchanges every part of the likeliest sets of named effects for another one, and fits it anew
+ * beside the rest: what leads alone need not be of the best pair, nor is its shape the same. */
+static fg_status exchange_parts(fg_context *ctx, fg_evidence_search *s) {
+  fg_evidence_model base[EXCHANGES];
+  size_t bases = 0, sets = 0;
+  for (size_t m = 1; m < s->count && sets < EXCHANGED && bases < EXCHANGES; m++) {
+    if (!fg_evidence_is_named(&s->models[m]) || s->models[m].parts < 2) continue;
+    sets++;
+    for (size_t k = 0; k < s->models[m].parts && bases < EXCHANGES; k++) {
+      bool known = false;
+      leave_out(&s->models[m], k, &base[bases]);
+      for (size_t b = 0; b < bases && !known; b++)
+        known = same_shapes(&base[b], &base[bases]);
+      bases += !known;
+    }
+  }
+  for (size_t b = 0; b < bases; b++)
+    FG_TRY(extend_model(ctx, s, &base[b], true));
+  qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   return FG_OK;
 }
 
@@ -250,11 +339,8 @@ static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
   size_t count = s->count < SHORTENED ? s->count : SHORTENED;
   for (size_t m = 1; m < count; m++)
     for (size_t k = 0; s->models[m].parts > 1 && k < s->models[m].parts; k++) {
-      fg_evidence_model shorter = s->models[m];
-      const fg_effect *effect = shorter.part[k]->effect;
-      shorter.parts--;
-      shorter.named -= effect && !fg_effect_is_unnamed(effect);
-      memmove(shorter.part + k, shorter.part + k + 1, (shorter.parts - k) * sizeof *shorter.part);
+      fg_evidence_model shorter;
+      leave_out(&s->models[m], k, &shorter);
       FG_TRY(evaluate(ctx, s, &shorter));
       set_score(s, &shorter);
       keep_model(s, &shorter);
@@ -277,15 +363,14 @@ static fg_status refit_models(fg_context *ctx, fg_evidence_search *s) {
 }
 
 fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                  const fg_effect_set *seed, const double *residual_um,
-                                  const double *jacobian, const fg_evidence_prior *prior,
-                                  fg_evidence_search *s) {
-  *s = (fg_evidence_search){.prior = *prior, .seed = seed};
+                                  const fg_evidence_request *request, const double *residual_um,
+                                  const double *jacobian, fg_evidence_search *s) {
+  *s = (fg_evidence_search){.request = *request};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_evidence_open(ctx, edge_fit, residual_um, jacobian, &s->problem));
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_STORE, sizeof *s->store, (void **)&s->store));
   FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EVIDENCE_MODELS, sizeof *s->models, (void **)&s->models));
-  FG_TRY_EXIT(fg_evidence_list_options(ctx, seed, jacobian, s));
+  FG_TRY_EXIT(fg_evidence_list_options(ctx, jacobian, s));
 exit:
   if (status != FG_OK) fg_evidence_search_close(s);
   return status;
@@ -299,8 +384,11 @@ fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   FG_TRY(find_scatter(ctx, s, &none));
   s->models[s->count++] = none;
   FG_TRY(run_rounds(ctx, s));
-  FG_TRY(propose_seed(ctx, s));
+  for (size_t k = 0; k < s->request.seeds; k++)
+    FG_TRY(propose_set(ctx, &s->request.seed[k], k == 0, s));
   qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+  for (int round = 0; round < EXCHANGE_ROUNDS; round++)
+    FG_TRY(exchange_parts(ctx, s));
   FG_TRY(shorten_models(ctx, s));
   FG_TRY(refit_models(ctx, s));
   qsort(s->models, s->count, sizeof *s->models, compare_models);

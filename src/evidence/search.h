@@ -7,12 +7,11 @@
 #include "effect/set.h"
 #include "evidence/model.h"
 
-/* Opens a search beside the geometry of the edge fit. `seed`: effects whose shapes are tried, too;
- * their displacements are put back in `residual_um`. */
+/* Opens a search beside the geometry of the edge fit. The displacements of the set
+ * in force are put back in `residual_um`. */
 fg_status fg_evidence_search_open(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                  const fg_effect_set *seed, const double *residual_um,
-                                  const double *jacobian, const fg_evidence_prior *prior,
-                                  fg_evidence_search *search);
+                                  const fg_evidence_request *request, const double *residual_um,
+                                  const double *jacobian, fg_evidence_search *search);
 /* Searches; again after a change of the noise. The models come sorted, best first. */
 fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *search);
 

@@ -217,28 +217,40 @@ void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_resul
   }
 }
 
+/* Sets that a search of models begins with. */
+enum { SEEDS_MAX = FG_EXPLANATIONS_MAX + 1 };
+typedef struct seed_list {
+  fg_effect_set *set; /* owned; SEEDS_MAX */
+  size_t count;
+} seed_list;
+
 /* On discs the search gives every disc's form to the noise, which evidence holds apart: its noise
  * is that of the edge beside them. */
 static fg_status open_search(fg_context *ctx, fg_scan_loop *loop, const double *residual,
-                             const double *jacobian, const fg_evidence_prior *prior,
+                             const double *jacobian, const seed_list *seeds,
                              fg_evidence_search *search) {
+  const fg_scan_loop_options *options = &loop->options;
+  const fg_evidence_request request = {
+      .seed = seeds->set,
+      .seeds = seeds->count,
+      .prior = {options->prior_size > 0 ? options->prior_size : 1,
+                options->prior_weight > 0 ? options->prior_weight : 1},
+      .threads = options->threads,
+  };
   fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_scatter before = edge_fit->scatter;
   if (edge_fit->discs) FG_TRY(fg_edge_fit_find_scatter(ctx, edge_fit, loop->residual_after));
-  fg_status status =
-      fg_evidence_search_open(ctx, edge_fit, &loop->set, residual, jacobian, prior, search);
+  fg_status status = fg_evidence_search_open(ctx, edge_fit, &request, residual, jacobian, search);
   edge_fit->scatter = before;
   return status;
 }
 
 /* A misfit of the best model is noise to all models: then the search is repeated with it. */
 static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double *residual,
-                               const double *jacobian, fg_evidence_search *search) {
-  const fg_scan_loop_options *options = &loop->options;
-  const fg_evidence_prior prior = {options->prior_size > 0 ? options->prior_size : 1,
-                                   options->prior_weight > 0 ? options->prior_weight : 1};
+                               const double *jacobian, const seed_list *seeds,
+                               fg_evidence_search *search) {
   double misfit_um = 0;
-  FG_TRY(open_search(ctx, loop, residual, jacobian, &prior, search));
+  FG_TRY(open_search(ctx, loop, residual, jacobian, seeds, search));
   FG_TRY(fg_evidence_search_run(ctx, search));
   FG_TRY(fg_evidence_find_misfit(ctx, search, &misfit_um));
   loop->misfit = misfit_um > MISFIT_MIN * search->problem.noise_um;
@@ -294,6 +306,28 @@ static bool leaves_more(const fg_scan_loop *loop, const fg_evidence_verdict *v) 
   return loop->misfit || (v->ties && is_loose(&v->tie[0]));
 }
 
+/* All that explain as well by the search before. */
+static void seed_by_search(const fg_scan_loop *loop, seed_list *seeds) {
+  for (seeds->count = 1; seeds->count <= loop->explanations.count; seeds->count++)
+    fg_search_take(&loop->explanations, seeds->count - 1, &seeds->set[seeds->count]);
+}
+
+/* The likeliest sets of named effects at one linearisation, for the next. */
+static void seed_by_evidence(const fg_evidence_search *search, seed_list *seeds) {
+  seeds->count = 1;
+  for (size_t m = 0; m < search->count && seeds->count < SEEDS_MAX; m++) {
+    const fg_evidence_model *model = &search->models[m];
+    fg_effect_set *to = &seeds->set[seeds->count];
+    if (!fg_evidence_is_named(model)) continue;
+    *to = (fg_effect_set){.count = model->parts};
+    for (size_t k = 0; k < model->parts; k++) {
+      to->effects[k].kind = model->part[k]->effect;
+      memcpy(to->effects[k].shape, model->part[k]->shape, sizeof to->effects[k].shape);
+    }
+    seeds->count++;
+  }
+}
+
 /* Columns that err speak against the right names, too: they are taken anew about the likeliest
  * ones before it is decided. */
 static fg_status move_to_names(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
@@ -306,12 +340,14 @@ static fg_status move_to_names(fg_context *ctx, fg_scan_loop *loop, fg_evidence_
 }
 
 static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residual, double *jacobian,
-                            bool first, bool *moved) {
+                            seed_list *seeds, bool first, bool *moved) {
   fg_evidence_search search = {.count = 0};
   fg_evidence_verdict verdict;
   fg_status status = FG_OK;
+  seeds->set[0] = loop->set;
   FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
-  FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, &search));
+  FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, seeds, &search));
+  seed_by_evidence(&search, seeds);
   if (first && search.problem.large) {
     FG_TRY_EXIT(move_to_names(ctx, loop, &search, moved));
     if (*moved) goto exit;
@@ -333,17 +369,21 @@ exit:
 fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   fg_edge_fit *edge_fit = &loop->edge_fit;
   double *residual = NULL, *jacobian = NULL;
+  seed_list seeds = {NULL, 0};
   bool moved = true;
   fg_status status = FG_OK;
   if (edge_fit->coarse || !fg_evidence_fits(edge_fit)) return FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge_fit->row_count, edge_fit->parameters * sizeof *jacobian,
                                  (void **)&jacobian));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, SEEDS_MAX, sizeof *seeds.set, (void **)&seeds.set));
+  seed_by_search(loop, &seeds);
   for (int round = 0; moved && round < LINEARISATIONS; round++)
-    FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, round == 0, &moved));
+    FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &seeds, round == 0, &moved));
   loop->by_evidence = true;
   loop->scanner_is_suspect = holds_scanner(&loop->explanations);
 exit:
+  free(seeds.set);
   free(residual);
   free(jacobian);
   return status;

@@ -215,7 +215,7 @@ static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const f
   fg_evidence_part part = {.effect = option->effect, .first = option->first, .count = option->each};
   fg_evidence_model with = *model;
   moments own = moments_in(room->mean + MOMENTS * c->count, c);
-  fg_evidence_effect_variances(&s->prior, option->effect, option->each, part.variance);
+  fg_evidence_effect_variances(&s->request.prior, option->effect, option->each, part.variance);
   with.part[with.parts++] = &part;
   memset(own.mean, 0, MOMENTS * c->count * sizeof *own.mean);
   FG_TRY(find_moments(ctx, s, c, &with, &own));

@@ -83,9 +83,9 @@ static bool leads(const fg_evidence_search *search, const fg_effect *effect) {
 static void look_by_evidence(foil_rows *f, const fg_effect *effect, bool wanted) {
   fg_context ctx = {0};
   fg_evidence_search search;
-  const fg_effect_set none = {.count = 0};
-  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f->edge_fit, &none, f->residual_um, f->jacobian,
-                                          &(fg_evidence_prior){1, 1}, &search));
+  const fg_evidence_request request = {.prior = {1, 1}};
+  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f->edge_fit, &request, f->residual_um, f->jacobian,
+                                          &search));
   assert_ok(&ctx, fg_evidence_search_run(&ctx, &search));
   if (leads(&search, effect) != wanted)
     fail_msg("%s %s", effect->id, wanted ? "does not lead" : "is found though it is left out");

@@ -17,9 +17,9 @@
 
 static void search(foil_rows *f, const fg_evidence_prior *prior, fg_evidence_search *s) {
   fg_context ctx = {0};
-  const fg_effect_set none = {.count = 0};
-  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f->edge_fit, &none, f->residual_um, f->jacobian,
-                                          prior, s));
+  const fg_evidence_request request = {.prior = *prior};
+  assert_ok(&ctx,
+            fg_evidence_search_open(&ctx, &f->edge_fit, &request, f->residual_um, f->jacobian, s));
   assert_ok(&ctx, fg_evidence_search_run(&ctx, s));
 }
 
@@ -65,6 +65,38 @@ static void a_shape_that_must_be_just_so_costs_more_than_a_start(void **state) {
     fg_evidence_search_close(&s);
   }
   assert_true(fabs(score[1] - score[0] - log(3)) < 1e-6);
+  foil_rows_close(&f);
+}
+
+static void put_pair(foil_rows *f, const char *const id[2], const double shape[2],
+                     const double um[2]) {
+  foil_rows_open(f);
+  foil_rows_put_noise(f, NOISE_UM);
+  fg_edge_fit_find_frame(&f->edge_fit);
+  for (int k = 0; k < 2; k++) {
+    const double own[FG_FIELD_SHAPES] = {shape[k]};
+    assert_true(foil_rows_add_effect(f, fg_effect_find(id[k]), own, &um[k], 1) > 0);
+  }
+}
+
+static bool is_pair(const fg_evidence_model *model, const char *const id[2]) {
+  return model->parts == 2 && fg_evidence_holds(model, fg_effect_find(id[0])) &&
+         fg_evidence_holds(model, fg_effect_find(id[1]));
+}
+
+/* Each alone explains less than several others do: the pair is reached from another one. */
+static void a_pair_leads_of_which_neither_leads_alone(void **state) {
+  (void)state;
+  static const char *const id[2] = {"scan.carriage_start", "scan.shear"};
+  foil_rows f;
+  fg_evidence_search s;
+  put_pair(&f, id, (const double[]){2.88, 0}, (const double[]){18, -8});
+  search(&f, &(fg_evidence_prior){1, 1}, &s);
+  if (!is_pair(&s.models[0], id))
+    fail_msg("%zu parts, first %s", s.models[0].parts,
+             s.models[0].part[0]->effect ? s.models[0].part[0]->effect->id
+                                         : s.models[0].part[0]->rival->name);
+  fg_evidence_search_close(&s);
   foil_rows_close(&f);
 }
 
@@ -146,10 +178,9 @@ static void decide_written_of(bool discs, const double score[WRITTEN],
   static fg_evidence_part part[24];
   foil_rows_open(&f);
   foil_rows_put_noise(&f, NOISE_UM);
-  const fg_effect_set none = {.count = 0};
-  const fg_evidence_prior prior = {1, 1};
-  assert_ok(&ctx, fg_evidence_search_open(&ctx, &f.edge_fit, &none, f.residual_um, f.jacobian,
-                                          &prior, &s));
+  const fg_evidence_request request = {.prior = {1, 1}};
+  assert_ok(&ctx,
+            fg_evidence_search_open(&ctx, &f.edge_fit, &request, f.residual_um, f.jacobian, &s));
   memset(part, 0, sizeof part);
   for (int m = 0; m < WRITTEN; m++)
     put_model(&s, part, score[m], names[m]);
@@ -266,6 +297,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
       cmocka_unit_test(one_cause_is_not_cut_into_named_pieces),
+      cmocka_unit_test(a_pair_leads_of_which_neither_leads_alone),
       cmocka_unit_test(a_name_beside_what_has_none_must_gain_more_than_the_columns_err),
       cmocka_unit_test(a_jump_stays_beside_fields_where_none_does_without_it),
       cmocka_unit_test(one_step_is_told_before_two),
