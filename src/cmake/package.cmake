@@ -18,7 +18,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libcurl4)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libmosquitto1, libpq5")
 # Libraries that the program loads itself.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libtiff6, libmicrohttpd12 | libmicrohttpd12t64")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libtiff6, libsqlite3-0, libmicrohttpd12 | libmicrohttpd12t64")
 # Versions for packages that depend on the shared library; a trigger, not a script, refreshes the loader's cache.
 file(WRITE ${CMAKE_BINARY_DIR}/package/shlibs "libfoilgauge ${ABI_VERSION} foilgauge (= ${PROJECT_VERSION})\n")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA

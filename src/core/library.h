@@ -9,6 +9,16 @@
 
 #include "foilgauge/status.h"
 
+/* A library's functions are one list, of which its struct of pointers and their names are made:
+ *
+ *   #define CURL_FUNCTIONS(F) F(curl_, easy_init) F(curl_, easy_perform)
+ *   static struct curl { CURL_FUNCTIONS(FG_LIBRARY_POINTER) } curl;
+ *   static const char *const names[] = {CURL_FUNCTIONS(FG_LIBRARY_NAME)};
+ *
+ * A member is called as its function, less the prefix. */
+#define FG_LIBRARY_POINTER(prefix, name) __typeof__(prefix##name) *name;
+#define FG_LIBRARY_NAME(prefix, name)    #prefix #name,
+
 typedef struct fg_library {
   const char *file;    /* its name to the loader (SONAME) */
   const char *package; /* of Debian */

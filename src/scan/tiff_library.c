@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scan/tiff_library.h"
 
-#include "core/library.h"
-
 fg_tiff_library fg_libtiff;
 
-#define NAME(name) "TIFF" #name,
-static const char *const names[] = {FG_TIFF_FUNCTIONS(NAME)};
+static const char *const names[] = {FG_TIFF_FUNCTIONS(FG_LIBRARY_NAME)};
 
 static fg_library library = {.file = FOILGAUGE_TIFF_FILE,
                              .package = "libtiff6",

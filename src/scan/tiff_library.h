@@ -5,41 +5,39 @@
 
 #include <tiffio.h>
 
-#include "foilgauge/status.h"
+#include "core/library.h"
 
 /* clang-format off */
 #define FG_TIFF_FUNCTIONS(F) \
-  F(ClientOpenExt) \
-  F(Close) \
-  F(GetField) \
-  F(GetFieldDefaulted) \
-  F(IsByteSwapped) \
-  F(IsCODECConfigured) \
-  F(IsTiled) \
-  F(LastDirectory) \
-  F(NumberOfStrips) \
-  F(OpenOptionsAlloc) \
-  F(OpenOptionsFree) \
-  F(OpenOptionsSetErrorHandlerExtR) \
-  F(OpenOptionsSetMaxSingleMemAlloc) \
-  F(OpenOptionsSetWarningHandlerExtR) \
-  F(ReadEncodedStrip) \
-  F(ReadRawStrip) \
-  F(ReadRawTile) \
-  F(ReadScanline) \
-  F(ReadTile) \
-  F(ReverseBits) \
-  F(ScanlineSize64) \
-  F(SetField) \
-  F(SwabArrayOfShort) \
-  F(TileSize64)
+  F(TIFF, ClientOpenExt) \
+  F(TIFF, Close) \
+  F(TIFF, GetField) \
+  F(TIFF, GetFieldDefaulted) \
+  F(TIFF, IsByteSwapped) \
+  F(TIFF, IsCODECConfigured) \
+  F(TIFF, IsTiled) \
+  F(TIFF, LastDirectory) \
+  F(TIFF, NumberOfStrips) \
+  F(TIFF, OpenOptionsAlloc) \
+  F(TIFF, OpenOptionsFree) \
+  F(TIFF, OpenOptionsSetErrorHandlerExtR) \
+  F(TIFF, OpenOptionsSetMaxSingleMemAlloc) \
+  F(TIFF, OpenOptionsSetWarningHandlerExtR) \
+  F(TIFF, ReadEncodedStrip) \
+  F(TIFF, ReadRawStrip) \
+  F(TIFF, ReadRawTile) \
+  F(TIFF, ReadScanline) \
+  F(TIFF, ReadTile) \
+  F(TIFF, ReverseBits) \
+  F(TIFF, ScanlineSize64) \
+  F(TIFF, SetField) \
+  F(TIFF, SwabArrayOfShort) \
+  F(TIFF, TileSize64)
 /* clang-format on */
 
 /* Functions of libtiff, less the word TIFF in front. */
 typedef struct fg_tiff_library {
-#define FG_TIFF_POINTER(name) __typeof__(TIFF##name) *name;
-  FG_TIFF_FUNCTIONS(FG_TIFF_POINTER)
-#undef FG_TIFF_POINTER
+  FG_TIFF_FUNCTIONS(FG_LIBRARY_POINTER)
 } fg_tiff_library;
 
 extern fg_tiff_library fg_libtiff; /* NULL before fg_tiff_library_load */

@@ -26,17 +26,12 @@ static const char name_before[] = "foilgauge-", name_after[] = ".sqlite";
 static fg_status vacuum_into(fg_context *ctx, const char *database, const char *path) {
   sqlite3 *connection;
   fg_query query;
-  if (sqlite3_open_v2(database, &connection, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, NULL) !=
-      SQLITE_OK) {
-    fg_status failed = fg_sql_fail(ctx, connection, database);
-    sqlite3_close_v2(connection);
-    return failed;
-  }
+  FG_TRY(fg_sql_open(ctx, database, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, &connection));
   fg_query_begin(connection, "VACUUM INTO ?", &query);
   fg_query_text(&query, path);
   fg_query_row(&query);
   fg_status status = fg_query_end(ctx, &query, path);
-  sqlite3_close_v2(connection);
+  fg_sql_close(connection);
   return status;
 }
 
@@ -93,7 +88,7 @@ static fg_status check_sound(fg_context *ctx, const char *path) {
   fg_query_begin(reader, "PRAGMA integrity_check(1)", &query);
   bool sound = fg_query_row(&query) && !strcmp(fg_query_get_text(&query, 0), "ok");
   fg_status status = fg_query_end(ctx, &query, path);
-  sqlite3_close_v2(reader);
+  fg_sql_close(reader);
   if (status != FG_OK || sound) return status;
   return fg_fail(ctx, FG_ERR_DATA, "%.800s: the backup is damaged", path);
 }
@@ -101,14 +96,12 @@ static fg_status check_sound(fg_context *ctx, const char *path) {
 /* Event numbers after the backup come again: receivers must not take them for those they have. */
 static fg_status renew_identity(fg_context *ctx, const char *path) {
   sqlite3 *writer;
-  fg_status status = sqlite3_open_v2(path, &writer, SQLITE_OPEN_READWRITE, NULL) == SQLITE_OK
-                         ? FG_OK
-                         : fg_sql_fail(ctx, writer, path);
+  fg_status status = fg_sql_open(ctx, path, SQLITE_OPEN_READWRITE, &writer);
   if (status == FG_OK)
     status = fg_sql_run(ctx, writer,
                         "PRAGMA journal_mode = DELETE;"
                         "UPDATE identity SET id = lower(hex(randomblob(16)))");
-  sqlite3_close_v2(writer);
+  fg_sql_close(writer);
   return status;
 }
 

@@ -122,7 +122,7 @@ static fg_status insert_cause(fg_context *ctx, sqlite3 *writer, const fg_trend_c
   fg_query_text(&query, note);
   fg_query_row(&query);
   FG_TRY(fg_query_end(ctx, &query, "keeping a cause"));
-  return insert_points(ctx, writer, cause, sqlite3_last_insert_rowid(writer));
+  return insert_points(ctx, writer, cause, fg_sqlite.last_insert_rowid(writer));
 }
 
 fg_status fg_cause_keep(fg_context *ctx, fg_station_database *database,

@@ -59,8 +59,8 @@ static fg_status insert_check(fg_context *ctx, sqlite3 *writer, const check_resu
 
 /* Keeps the state of a check; the same bytes again are no second check. */
 static fg_status insert_state(fg_context *ctx, sqlite3 *writer, const check_result *check) {
-  if (!sqlite3_changes(writer)) return FG_OK;
-  return fg_check_state_keep(ctx, writer, sqlite3_last_insert_rowid(writer), &check->state);
+  if (!fg_sqlite.changes(writer)) return FG_OK;
+  return fg_check_state_keep(ctx, writer, fg_sqlite.last_insert_rowid(writer), &check->state);
 }
 
 static fg_status keep_check(fg_context *ctx, fg_inspection *station, const check_result *check) {
@@ -173,7 +173,7 @@ fg_status fg_action_baseline(fg_context *ctx, fg_inspection *station, const fg_r
   fg_query_integer(&query, strtoll(fg_request_get(request, "id"), NULL, 10));
   fg_query_row(&query);
   fg_status status = fg_query_end(ctx, &query, "accepting a baseline");
-  if (status == FG_OK && !sqlite3_changes(writer))
+  if (status == FG_OK && !fg_sqlite.changes(writer))
     status = fg_fail(ctx, FG_ERR_USAGE,
                      "Only the newest check can become the baseline, and only when scale and shear "
                      "are as allowed: load the page again.");

@@ -150,12 +150,12 @@ int64_t fg_station_now(void) {
 /* fg_stored_name in SQL, for migrations. */
 static void store_name(sqlite3_context *call, int count, sqlite3_value **values) {
   char *stored;
-  const unsigned char *name = count ? sqlite3_value_text(values[0]) : NULL;
+  const unsigned char *name = count ? fg_sqlite.value_text(values[0]) : NULL;
   if (!name) return;
   if (fg_stored_name(NULL, (const char *)name, &stored) != FG_OK)
-    sqlite3_result_error_nomem(call);
+    fg_sqlite.result_error_nomem(call);
   else
-    sqlite3_result_text(call, stored, -1, free);
+    fg_sqlite.result_text(call, stored, -1, free);
 }
 
 /* journal_size_limit: a journal that a large transaction or a slow reader made large shrinks
@@ -166,14 +166,13 @@ static fg_status open_connection(fg_context *ctx, const char *path, bool write,
   const char *settings = write ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
                                  "PRAGMA foreign_keys = ON; PRAGMA journal_size_limit = 8388608;"
                                : "PRAGMA query_only = ON;";
-  if (sqlite3_open_v2(path, connection, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK)
+  FG_TRY(fg_sql_open(ctx, path, flags | SQLITE_OPEN_NOMUTEX, connection));
+  fg_sqlite.busy_timeout(*connection, BUSY_MS);
+  if (write && fg_sqlite.create_function(*connection, "stored_name", 1,
+                                         SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY,
+                                         NULL, store_name, NULL, NULL) != SQLITE_OK)
     return fg_sql_fail(ctx, *connection, path);
-  sqlite3_busy_timeout(*connection, BUSY_MS);
-  if (write && sqlite3_create_function(*connection, "stored_name", 1,
-                                       SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY, NULL,
-                                       store_name, NULL, NULL) != SQLITE_OK)
-    return fg_sql_fail(ctx, *connection, path);
-  if (sqlite3_exec(*connection, settings, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
+  if (fg_sqlite.exec(*connection, settings, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
   return fg_sql_fail(ctx, *connection, path);
 }
 
@@ -212,7 +211,7 @@ static fg_status migrate(fg_context *ctx, fg_station_database *database) {
   for (; version < VERSION; version++) {
     FG_TRY(fg_text_print(ctx, &step, "BEGIN IMMEDIATE;%s PRAGMA user_version = %d; COMMIT;",
                          migrations[version], version + 1));
-    bool done = sqlite3_exec(database->writer, step, NULL, NULL, NULL) == SQLITE_OK;
+    bool done = fg_sqlite.exec(database->writer, step, NULL, NULL, NULL) == SQLITE_OK;
     free(step);
     if (!done) return fg_sql_fail(ctx, database->writer, database->path);
   }
@@ -239,7 +238,7 @@ static fg_status open_both(fg_context *ctx, const char *folder, fg_station_datab
 fg_status fg_station_database_open_reader(fg_context *ctx, const char *path, sqlite3 **reader) {
   fg_status status = open_connection(ctx, path, false, reader);
   if (status == FG_OK) return FG_OK;
-  sqlite3_close_v2(*reader);
+  fg_sql_close(*reader);
   *reader = NULL;
   return status;
 }
@@ -253,7 +252,7 @@ fg_status fg_station_database_check(fg_context *ctx, const char *path) {
   fg_query_begin(reader, "PRAGMA user_version", &query);
   int version = fg_query_row(&query) ? (int)fg_query_get_integer(&query, 0) : 0;
   fg_status status = fg_query_end(ctx, &query, path);
-  sqlite3_close_v2(reader);
+  fg_sql_close(reader);
   if (status != FG_OK || version == VERSION) return status;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: the database has version %d, this program's have %d: start the station of "
@@ -282,17 +281,17 @@ bool fg_station_database_is_there(const fg_station_database *database) {
 static void leave_journal(sqlite3 *connection) {
   int persist = 1;
   if (!connection) return;
-  sqlite3_db_config(connection, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
-  sqlite3_file_control(connection, "main", SQLITE_FCNTL_PERSIST_WAL, &persist);
+  fg_sqlite.db_config(connection, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
+  fg_sqlite.file_control(connection, "main", SQLITE_FCNTL_PERSIST_WAL, &persist);
 }
 
 void fg_station_database_keep_up(fg_station_database *database) {
   double now = fg_clock_seconds();
   if (now - database->in_file_at < IN_FILE_EVERY_S) return;
   pthread_mutex_lock(&database->writing);
-  int64_t changes = sqlite3_total_changes64(database->writer);
+  int64_t changes = fg_sqlite.total_changes64(database->writer);
   if (changes != database->in_file && fg_station_database_is_there(database) &&
-      sqlite3_wal_checkpoint_v2(database->writer, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL, NULL) ==
+      fg_sqlite.wal_checkpoint_v2(database->writer, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL, NULL) ==
           SQLITE_OK)
     database->in_file = changes;
   database->in_file_at = now;
@@ -302,7 +301,7 @@ void fg_station_database_keep_up(fg_station_database *database) {
 /* SQLite does so itself when the last connection closes, but not where another program has the file
  * open. */
 static void move_journal(sqlite3 *writer) {
-  if (writer) sqlite3_wal_checkpoint_v2(writer, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+  if (writer) fg_sqlite.wal_checkpoint_v2(writer, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
 }
 
 void fg_station_database_close(fg_station_database *database) {
@@ -311,9 +310,9 @@ void fg_station_database_close(fg_station_database *database) {
     leave_journal(database->reader);
     leave_journal(database->writer);
   }
-  sqlite3_close_v2(database->reader);
+  fg_sql_close(database->reader);
   if (!gone) move_journal(database->writer);
-  sqlite3_close_v2(database->writer);
+  fg_sql_close(database->writer);
   database->reader = database->writer = NULL;
   free(database->path);
   database->path = NULL;
@@ -356,7 +355,7 @@ fg_status fg_station_database_end(fg_context *ctx, fg_station_database *database
   fg_context inner;
   if (status == FG_OK) status = fg_sql_run(ctx, database->writer, "COMMIT");
   /* An error may have rolled back already. */
-  if (status != FG_OK && !sqlite3_get_autocommit(database->writer))
+  if (status != FG_OK && !fg_sqlite.get_autocommit(database->writer))
     fg_sql_run(&inner, database->writer, "ROLLBACK");
   pthread_mutex_unlock(&database->writing);
   return status;

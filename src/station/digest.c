@@ -242,7 +242,7 @@ fg_status fg_station_digest(fg_context *ctx, const fg_station_request *request, 
   }
   if (status == FG_OK) status = write_digest(ctx, d);
   if (page) fg_html_end(page);
-  sqlite3_close_v2(d->reader);
+  fg_sql_close(d->reader);
   free(d->path);
   free(d);
   return status;

@@ -142,7 +142,7 @@ static fg_status insert_disposition(fg_context *ctx, sqlite3 *writer, const fg_r
   fg_query_integer(&query, foil);
   fg_query_row(&query);
   FG_TRY(fg_query_end(ctx, &query, "keeping a disposition"));
-  if (sqlite3_changes(writer) == 1) return fg_event_keep(ctx, writer, foil, FG_EVENT_DISPOSED);
+  if (fg_sqlite.changes(writer) == 1) return fg_event_keep(ctx, writer, foil, FG_EVENT_DISPOSED);
   return fg_fail(ctx, FG_ERR_USAGE, "There is no such foil that did not pass.");
 }
 

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "station/http_library.h"
 
-#include "core/library.h"
-
 fg_http_library fg_microhttpd;
 
-#define NAME(name) "MHD_" #name,
-static const char *const names[] = {FG_HTTP_FUNCTIONS(NAME)};
+static const char *const names[] = {FG_HTTP_FUNCTIONS(FG_LIBRARY_NAME)};
 
 static fg_library library = {.file = FOILGAUGE_MICROHTTPD_FILE,
                              .package = "libmicrohttpd12",

@@ -5,29 +5,27 @@
 
 #include <microhttpd.h>
 
-#include "foilgauge/status.h"
+#include "core/library.h"
 
 /* clang-format off */
 #define FG_HTTP_FUNCTIONS(F) \
-  F(add_response_header) \
-  F(create_response_from_buffer) \
-  F(destroy_response) \
-  F(get_connection_info) \
-  F(get_connection_values) \
-  F(get_daemon_info) \
-  F(lookup_connection_value) \
-  F(queue_response) \
-  F(resume_connection) \
-  F(start_daemon) \
-  F(stop_daemon) \
-  F(suspend_connection)
+  F(MHD_, add_response_header) \
+  F(MHD_, create_response_from_buffer) \
+  F(MHD_, destroy_response) \
+  F(MHD_, get_connection_info) \
+  F(MHD_, get_connection_values) \
+  F(MHD_, get_daemon_info) \
+  F(MHD_, lookup_connection_value) \
+  F(MHD_, queue_response) \
+  F(MHD_, resume_connection) \
+  F(MHD_, start_daemon) \
+  F(MHD_, stop_daemon) \
+  F(MHD_, suspend_connection)
 /* clang-format on */
 
 /* Functions of libmicrohttpd, less MHD_ in front. */
 typedef struct fg_http_library {
-#define FG_HTTP_POINTER(name) __typeof__(MHD_##name) *name;
-  FG_HTTP_FUNCTIONS(FG_HTTP_POINTER)
-#undef FG_HTTP_POINTER
+  FG_HTTP_FUNCTIONS(FG_LIBRARY_POINTER)
 } fg_http_library;
 
 extern fg_http_library fg_microhttpd; /* NULL before fg_http_library_load */

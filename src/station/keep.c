@@ -40,7 +40,7 @@ static fg_status insert_setup(fg_context *ctx, fg_station_database *database,
   fg_query_integer(&query, fg_station_now());
   fg_query_row(&query);
   FG_TRY(fg_query_end(ctx, &query, "keeping the setup"));
-  *setup = sqlite3_last_insert_rowid(database->writer);
+  *setup = fg_sqlite.last_insert_rowid(database->writer);
   return FG_OK;
 }
 
@@ -188,7 +188,7 @@ fg_status fg_station_insert_card(fg_context *ctx, fg_station_database *database,
   fg_query_text(&query, file->name);
   fg_query_integer(&query, file->bytes);
   fg_query_integer(&query, file->modified_ns);
-  fg_query_integer(&query, sqlite3_last_insert_rowid(database->writer));
+  fg_query_integer(&query, fg_sqlite.last_insert_rowid(database->writer));
   fg_query_row(&query);
   return fg_query_end(ctx, &query, "keeping what is known of a file");
 }

@@ -35,7 +35,7 @@ static fg_status find_quantity(fg_context *ctx, sqlite3 *writer, fg_quantity_own
   fg_query_text(&query, row->unit);
   fg_query_row(&query);
   FG_TRY(fg_query_end(ctx, &query, "keeping a quantity"));
-  *id = sqlite3_last_insert_rowid(writer);
+  *id = fg_sqlite.last_insert_rowid(writer);
   return FG_OK;
 }
 
@@ -173,7 +173,7 @@ static fg_status keep_foil(fg_context *ctx, sqlite3 *writer, const fg_station_sc
   const fg_design *design = &kept->settings->design;
   FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
   fg_status status = insert_foil(ctx, writer, kept, foil, scan, decision.outcome.verdict);
-  int64_t id = sqlite3_last_insert_rowid(writer);
+  int64_t id = fg_sqlite.last_insert_rowid(writer);
   bool measured = fg_foil_is_measured(foil);
   if (status == FG_OK) status = keep_deciding(ctx, writer, &decision, id);
   if (status == FG_OK && measured)
@@ -225,7 +225,7 @@ static fg_status keep_rows(fg_context *ctx, fg_station_database *database,
                            int64_t *scan) {
   sqlite3 *writer = database->writer;
   FG_TRY(insert_scan(ctx, writer, kept, verdict, record));
-  *scan = sqlite3_last_insert_rowid(writer);
+  *scan = fg_sqlite.last_insert_rowid(writer);
   for (size_t i = 0; i < kept->measurement->foil_count; i++)
     FG_TRY(keep_foil(ctx, writer, kept, &kept->measurement->foils[i], *scan));
   return fg_station_insert_card(ctx, database, &kept->file, FG_CARD_MEASURED, kept->note, *scan);

@@ -322,7 +322,7 @@ fg_status fg_page_found(fg_context *ctx, fg_inspection *station, sqlite3 *reader
   (void)reader;
   FG_TRY(fg_station_database_open_reader(ctx, station->database.path, &own));
   fg_status status = write_found(ctx, station, own, request, out);
-  sqlite3_close_v2(own);
+  fg_sql_close(own);
   return status;
 }
 

@@ -33,18 +33,32 @@ static fg_status fail_code(fg_context *ctx, int code, const char *what, const ch
 }
 
 fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what) {
-  int code = connection ? sqlite3_extended_errcode(connection) : SQLITE_NOMEM;
-  return fail_code(ctx, code, what, connection ? sqlite3_errmsg(connection) : "out of memory");
+  int code = connection ? fg_sqlite.extended_errcode(connection) : SQLITE_NOMEM;
+  return fail_code(ctx, code, what, connection ? fg_sqlite.errmsg(connection) : "out of memory");
+}
+
+void fg_sql_close(sqlite3 *connection) {
+  if (connection) fg_sqlite.close_v2(connection);
+}
+
+fg_status fg_sql_open(fg_context *ctx, const char *path, int flags, sqlite3 **connection) {
+  *connection = NULL;
+  FG_TRY(fg_sqlite_library_load(ctx));
+  if (fg_sqlite.open_v2(path, connection, flags, NULL) == SQLITE_OK) return FG_OK;
+  fg_status failed = fg_sql_fail(ctx, *connection, path);
+  fg_sql_close(*connection);
+  *connection = NULL;
+  return failed;
 }
 
 fg_status fg_sql_run(fg_context *ctx, sqlite3 *connection, const char *sql) {
-  if (sqlite3_exec(connection, sql, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
+  if (fg_sqlite.exec(connection, sql, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
   return fg_sql_fail(ctx, connection, "the database");
 }
 
 void fg_query_begin(sqlite3 *connection, const char *sql, fg_query *query) {
   *query = (fg_query){.connection = connection};
-  query->error = sqlite3_prepare_v2(connection, sql, -1, &query->statement, NULL);
+  query->error = fg_sqlite.prepare_v2(connection, sql, -1, &query->statement, NULL);
 }
 
 static void note_error(fg_query *query, int code) {
@@ -58,8 +72,8 @@ static void bind_visible(fg_query *query, const char *text) {
   char *visible = malloc(4 * size);
   if (visible) {
     fg_utf8_make_visible(text, size, true, visible, &length);
-    note_error(query, sqlite3_bind_text64(query->statement, query->bound, visible, length,
-                                          SQLITE_TRANSIENT, SQLITE_UTF8));
+    note_error(query, fg_sqlite.bind_text64(query->statement, query->bound, visible, length,
+                                            SQLITE_TRANSIENT, SQLITE_UTF8));
   } else {
     note_error(query, SQLITE_NOMEM);
   }
@@ -73,63 +87,63 @@ void fg_query_text(fg_query *query, const char *text) {
     return;
   }
   if (query->error == SQLITE_OK)
-    note_error(query,
-               text ? sqlite3_bind_text(query->statement, query->bound, text, -1, SQLITE_TRANSIENT)
-                    : sqlite3_bind_null(query->statement, query->bound));
+    note_error(query, text ? fg_sqlite.bind_text(query->statement, query->bound, text, -1,
+                                                 SQLITE_TRANSIENT)
+                           : fg_sqlite.bind_null(query->statement, query->bound));
 }
 
 void fg_query_integer(fg_query *query, int64_t value) {
   query->bound++;
   if (query->error == SQLITE_OK)
-    note_error(query, sqlite3_bind_int64(query->statement, query->bound, value));
+    note_error(query, fg_sqlite.bind_int64(query->statement, query->bound, value));
 }
 
 void fg_query_number(fg_query *query, double value) {
   query->bound++;
   if (query->error == SQLITE_OK)
-    note_error(query, isfinite(value) ? sqlite3_bind_double(query->statement, query->bound, value)
-                                      : sqlite3_bind_null(query->statement, query->bound));
+    note_error(query, isfinite(value) ? fg_sqlite.bind_double(query->statement, query->bound, value)
+                                      : fg_sqlite.bind_null(query->statement, query->bound));
 }
 
 bool fg_query_row(fg_query *query) {
   if (query->error != SQLITE_OK) return false;
-  int code = sqlite3_step(query->statement);
+  int code = fg_sqlite.step(query->statement);
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) note_error(query, code);
   return false;
 }
 
 const char *fg_query_get_text(const fg_query *query, int column) {
-  const unsigned char *text = sqlite3_column_text(query->statement, column);
+  const unsigned char *text = fg_sqlite.column_text(query->statement, column);
   return text ? (const char *)text : "";
 }
 
 int64_t fg_query_get_integer(const fg_query *query, int column) {
-  return sqlite3_column_int64(query->statement, column);
+  return fg_sqlite.column_int64(query->statement, column);
 }
 
 double fg_query_get_number(const fg_query *query, int column) {
-  return fg_query_is_null(query, column) ? NAN : sqlite3_column_double(query->statement, column);
+  return fg_query_is_null(query, column) ? NAN : fg_sqlite.column_double(query->statement, column);
 }
 
 bool fg_query_is_null(const fg_query *query, int column) {
-  return sqlite3_column_type(query->statement, column) == SQLITE_NULL;
+  return fg_sqlite.column_type(query->statement, column) == SQLITE_NULL;
 }
 
 void fg_query_again(fg_query *query) {
   query->bound = 0;
-  if (query->statement) sqlite3_reset(query->statement);
+  if (query->statement) fg_sqlite.reset(query->statement);
 }
 
 /* The connection's message is of the last call: an earlier error is reported by its code. */
 fg_status fg_query_end(fg_context *ctx, fg_query *query, const char *what) {
   fg_status status = FG_OK;
   if (query->error != SQLITE_OK) {
-    bool last = (sqlite3_errcode(query->connection) & 0xFF) == (query->error & 0xFF);
+    bool last = (fg_sqlite.errcode(query->connection) & 0xFF) == (query->error & 0xFF);
     status = fail_code(ctx, query->error, what,
-                       last ? sqlite3_errmsg(query->connection) : sqlite3_errstr(query->error));
+                       last ? fg_sqlite.errmsg(query->connection) : fg_sqlite.errstr(query->error));
   }
-  sqlite3_finalize(query->statement);
+  fg_sqlite.finalize(query->statement);
   query->statement = NULL;
   return status;
 }

@@ -7,9 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <sqlite3.h>
+#include "station/sqlite_library.h"
 
-#include "foilgauge/status.h"
+/* Opens a database, by flags of sqlite3_open_v2. *connection is NULL after a failure. */
+fg_status fg_sql_open(fg_context *ctx, const char *path, int flags, sqlite3 **connection);
+void fg_sql_close(sqlite3 *connection);
 
 /* Fails with SQLite's words and advice: FG_ERR_IO (disk full, busy), FG_ERR_DATA (damaged). */
 fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what);

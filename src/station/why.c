@@ -35,7 +35,7 @@ fg_status fg_why_search(fg_context *ctx, const fg_station_request *request, cons
   sqlite3 *reader;
   FG_TRY(fg_station_database_open_reader(ctx, database, &reader));
   fg_status status = search_data(ctx, request, reader, choice, report);
-  sqlite3_close_v2(reader);
+  fg_sql_close(reader);
   return status;
 }
 

@@ -11,26 +11,24 @@
 #include "core/text.h"
 
 /* Functions of libpq. */
-static struct pq {
-  __typeof__(PQconnectdb) *connectdb;
-  __typeof__(PQstatus) *status;
-  __typeof__(PQreset) *reset;
-  __typeof__(PQfinish) *finish;
-  __typeof__(PQerrorMessage) *error;
-  __typeof__(PQexecParams) *exec;
-  __typeof__(PQresultStatus) *result;
-  __typeof__(PQntuples) *rows;
-  __typeof__(PQnfields) *columns;
-  __typeof__(PQgetvalue) *value;
-  __typeof__(PQclear) *clear;
-  __typeof__(PQtransactionStatus) *transaction;
-  __typeof__(PQsetNoticeProcessor) *notices;
-} pq;
-static const char *const names[] = {
-    "PQconnectdb",         "PQstatus",     "PQreset",        "PQfinish",
-    "PQerrorMessage",      "PQexecParams", "PQresultStatus", "PQntuples",
-    "PQnfields",           "PQgetvalue",   "PQclear",        "PQtransactionStatus",
-    "PQsetNoticeProcessor"};
+/* clang-format off */
+#define PQ_FUNCTIONS(F) \
+  F(PQ, connectdb) \
+  F(PQ, status) \
+  F(PQ, reset) \
+  F(PQ, finish) \
+  F(PQ, errorMessage) \
+  F(PQ, execParams) \
+  F(PQ, resultStatus) \
+  F(PQ, ntuples) \
+  F(PQ, nfields) \
+  F(PQ, getvalue) \
+  F(PQ, clear) \
+  F(PQ, transactionStatus) \
+  F(PQ, setNoticeProcessor)
+/* clang-format on */
+static struct pq { PQ_FUNCTIONS(FG_LIBRARY_POINTER) } pq;
+static const char *const names[] = {PQ_FUNCTIONS(FG_LIBRARY_NAME)};
 
 static fg_library libpq = {.file = "libpq.so.5",
                            .package = "libpq5",
@@ -40,7 +38,7 @@ static fg_library libpq = {.file = "libpq.so.5",
                            .mutex = PTHREAD_MUTEX_INITIALIZER};
 
 static fg_status fail_pq(fg_context *ctx, PGconn *connection) {
-  const char *words = pq.error(connection);
+  const char *words = pq.errorMessage(connection);
   return fg_fail(ctx, FG_ERR_IO, "PostgreSQL: %.*s", (int)strcspn(words, "\n"), words);
 }
 
@@ -53,7 +51,7 @@ static fg_status open_postgresql(fg_context *ctx, const char *database, void **c
   FG_TRY(fg_library_load(ctx, &libpq));
   PGconn *opened = *connection = pq.connectdb(database);
   if (!opened) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: PostgreSQL");
-  pq.notices(opened, ignore_notice, NULL);
+  pq.setNoticeProcessor(opened, ignore_notice, NULL);
   if (pq.status(opened) == CONNECTION_OK) return FG_OK;
   fg_status status = fail_pq(ctx, opened);
   pq.finish(opened);
@@ -63,11 +61,11 @@ static fg_status open_postgresql(fg_context *ctx, const char *database, void **c
 
 static fg_status copy_result(fg_context *ctx, PGresult *result, fg_hub_rows *rows) {
   char **cells;
-  rows->columns = (size_t)pq.columns(result);
-  for (int row = 0; row < pq.rows(result); row++) {
+  rows->columns = (size_t)pq.nfields(result);
+  for (int row = 0; row < pq.ntuples(result); row++) {
     FG_TRY(fg_hub_rows_add(ctx, rows, &cells));
     for (size_t i = 0; i < rows->columns; i++)
-      FG_TRY(fg_text_print(ctx, &cells[i], "%s", pq.value(result, row, (int)i)));
+      FG_TRY(fg_text_print(ctx, &cells[i], "%s", pq.getvalue(result, row, (int)i)));
   }
   return FG_OK;
 }
@@ -76,8 +74,8 @@ static fg_status run_postgresql(fg_context *ctx, void *connection, const char *s
                                 const char *const *values, size_t count, fg_hub_rows *rows) {
   if (pq.status(connection) != CONNECTION_OK) pq.reset(connection);
   if (pq.status(connection) != CONNECTION_OK) return fail_pq(ctx, connection);
-  PGresult *result = pq.exec(connection, sql, (int)count, NULL, values, NULL, NULL, 0);
-  ExecStatusType how = pq.result(result);
+  PGresult *result = pq.execParams(connection, sql, (int)count, NULL, values, NULL, NULL, 0);
+  ExecStatusType how = pq.resultStatus(result);
   fg_status status = FG_OK;
   if (how != PGRES_COMMAND_OK && how != PGRES_TUPLES_OK)
     status = fail_pq(ctx, connection);

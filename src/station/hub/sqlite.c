@@ -6,16 +6,15 @@
 enum { BUSY_MS = 5000 };
 
 static void close_sqlite(void *connection) {
-  sqlite3_close_v2(connection);
+  fg_sql_close(connection);
 }
 
 static fg_status open_sqlite(fg_context *ctx, const char *database, void **connection) {
   sqlite3 *opened;
   int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
-  bool done = sqlite3_open_v2(database, &opened, flags, NULL) == SQLITE_OK;
-  fg_status status = done ? FG_OK : fg_sql_fail(ctx, opened, database);
-  if (done) sqlite3_busy_timeout(opened, BUSY_MS);
-  if (done)
+  fg_status status = fg_sql_open(ctx, database, flags, &opened);
+  if (status == FG_OK) fg_sqlite.busy_timeout(opened, BUSY_MS);
+  if (status == FG_OK)
     status = fg_sql_run(ctx, opened, "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;");
   *connection = opened;
   if (status == FG_OK) return FG_OK;
@@ -26,7 +25,7 @@ static fg_status open_sqlite(fg_context *ctx, const char *database, void **conne
 
 static fg_status copy_row(fg_context *ctx, const fg_query *query, fg_hub_rows *rows) {
   char **cells;
-  rows->columns = (size_t)sqlite3_column_count(query->statement);
+  rows->columns = (size_t)fg_sqlite.column_count(query->statement);
   FG_TRY(fg_hub_rows_add(ctx, rows, &cells));
   for (size_t i = 0; i < rows->columns; i++)
     FG_TRY(fg_text_print(ctx, &cells[i], "%s", fg_query_get_text(query, (int)i)));

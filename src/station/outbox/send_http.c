@@ -11,21 +11,20 @@
 enum { CONNECT_S = 10, TOTAL_S = 60, HEADER_BYTES = 600, ANSWER_BYTES = 200 };
 
 /* Functions of libcurl. */
-static struct curl {
-  __typeof__(curl_easy_init) *easy_init;
-  __typeof__(curl_easy_setopt) *easy_setopt;
-  __typeof__(curl_easy_perform) *easy_perform;
-  __typeof__(curl_easy_getinfo) *easy_getinfo;
-  __typeof__(curl_easy_cleanup) *easy_cleanup;
-  __typeof__(curl_easy_strerror) *easy_strerror;
-  __typeof__(curl_slist_append) *slist_append;
-  __typeof__(curl_slist_free_all) *slist_free_all;
-  __typeof__(curl_global_init) *global_init;
-} curl;
-static const char *const names[] = {
-    "curl_easy_init",    "curl_easy_setopt",    "curl_easy_perform",
-    "curl_easy_getinfo", "curl_easy_cleanup",   "curl_easy_strerror",
-    "curl_slist_append", "curl_slist_free_all", "curl_global_init"};
+/* clang-format off */
+#define CURL_FUNCTIONS(F) \
+  F(curl_, easy_init) \
+  F(curl_, easy_setopt) \
+  F(curl_, easy_perform) \
+  F(curl_, easy_getinfo) \
+  F(curl_, easy_cleanup) \
+  F(curl_, easy_strerror) \
+  F(curl_, slist_append) \
+  F(curl_, slist_free_all) \
+  F(curl_, global_init)
+/* clang-format on */
+static struct curl { CURL_FUNCTIONS(FG_LIBRARY_POINTER) } curl;
+static const char *const names[] = {CURL_FUNCTIONS(FG_LIBRARY_NAME)};
 
 static void start_curl(void) {
   curl.global_init(CURL_GLOBAL_DEFAULT);

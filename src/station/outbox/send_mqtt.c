@@ -16,36 +16,25 @@ enum { PORT = 1883, KEEP_ALIVE_S = 60, TURN_MS = 100, QOS = 1, HOST_BYTES = 256 
 static const double acknowledge_s = 20;
 
 /* Functions of libmosquitto. */
-static struct mosquitto_library {
-  __typeof__(mosquitto_connack_string) *connack_string;
-  __typeof__(mosquitto_connect) *connect;
-  __typeof__(mosquitto_connect_callback_set) *connect_callback_set;
-  __typeof__(mosquitto_destroy) *destroy;
-  __typeof__(mosquitto_disconnect) *disconnect;
-  __typeof__(mosquitto_disconnect_callback_set) *disconnect_callback_set;
-  __typeof__(mosquitto_lib_init) *lib_init;
-  __typeof__(mosquitto_loop) *loop;
-  __typeof__(mosquitto_new) *new;
-  __typeof__(mosquitto_publish) *publish;
-  __typeof__(mosquitto_publish_callback_set) *publish_callback_set;
-  __typeof__(mosquitto_reinitialise) *reinitialise;
-  __typeof__(mosquitto_strerror) *strerror;
-  __typeof__(mosquitto_username_pw_set) *username_pw_set;
-} broker;
-static const char *const names[] = {"mosquitto_connack_string",
-                                    "mosquitto_connect",
-                                    "mosquitto_connect_callback_set",
-                                    "mosquitto_destroy",
-                                    "mosquitto_disconnect",
-                                    "mosquitto_disconnect_callback_set",
-                                    "mosquitto_lib_init",
-                                    "mosquitto_loop",
-                                    "mosquitto_new",
-                                    "mosquitto_publish",
-                                    "mosquitto_publish_callback_set",
-                                    "mosquitto_reinitialise",
-                                    "mosquitto_strerror",
-                                    "mosquitto_username_pw_set"};
+/* clang-format off */
+#define MOSQUITTO_FUNCTIONS(F) \
+  F(mosquitto_, connack_string) \
+  F(mosquitto_, connect) \
+  F(mosquitto_, connect_callback_set) \
+  F(mosquitto_, destroy) \
+  F(mosquitto_, disconnect) \
+  F(mosquitto_, disconnect_callback_set) \
+  F(mosquitto_, lib_init) \
+  F(mosquitto_, loop) \
+  F(mosquitto_, new) \
+  F(mosquitto_, publish) \
+  F(mosquitto_, publish_callback_set) \
+  F(mosquitto_, reinitialise) \
+  F(mosquitto_, strerror) \
+  F(mosquitto_, username_pw_set)
+/* clang-format on */
+static struct mosquitto_library { MOSQUITTO_FUNCTIONS(FG_LIBRARY_POINTER) } broker;
+static const char *const names[] = {MOSQUITTO_FUNCTIONS(FG_LIBRARY_NAME)};
 
 static void start_mosquitto(void) {
   broker.lib_init();
