@@ -13,7 +13,7 @@
 
 /* Models that are extended in a round: of named effects alone, and with rivals if they are no
  * further than REACH from the best. */
-enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 2, ROUNDS = 4 };
+enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 3, ROUNDS = 4 };
 #define REACH 60.0
 /* The likeliest models, of which every part is left out in turn; models that get their own scatter,
  * and whose effects are fitted together. */
