@@ -184,6 +184,8 @@ static fg_status allocate_problem(fg_context *ctx, fg_evidence_problem *p) {
   FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS * parameters, sizeof *p->along,
                             (void **)&p->along));
   FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS, sizeof *p->right, (void **)&p->right));
+  FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS, FG_EVIDENCE_NEAR * sizeof *p->near,
+                            (void **)&p->near));
   return fg_memory_allocate(ctx, FG_EVIDENCE_COLUMNS, sizeof *p->gram, (void **)&p->gram);
 }
 
@@ -221,6 +223,8 @@ void fg_evidence_rescale(fg_evidence_problem *p, double noise_um) {
     p->right[c] *= by * by;
     for (size_t k = 0; p->gram[c] && k < FG_EVIDENCE_COLUMNS; k++)
       p->gram[c][k] *= by * by;
+    for (size_t k = 0; k < FG_EVIDENCE_NEAR; k++)
+      p->near[c * FG_EVIDENCE_NEAR + k] *= by * by;
   }
   p->noise_um = noise_um;
 }
@@ -240,6 +244,7 @@ void fg_evidence_close(fg_evidence_problem *p) {
   free(p->basis_span);
   free(p->span);
   free(p->right);
+  free(p->near);
   free(p->gram);
   *p = (fg_evidence_problem){.edge_fit = NULL};
 }
@@ -252,20 +257,25 @@ void fg_evidence_make(const fg_evidence_problem *p, const double *values, double
   column->right = fg_dot_in_lanes(column->values, p->residual, p->rows);
 }
 
+static size_t note_column(fg_evidence_problem *p, size_t at, const fg_evidence_column *column) {
+  p->span[at] = column->span;
+  p->right[at] = column->right;
+  for (size_t k = 0; k < FG_EVIDENCE_NEAR; k++)
+    p->near[at * FG_EVIDENCE_NEAR + k] = NAN;
+  return at;
+}
+
 void fg_evidence_put(fg_evidence_problem *p, size_t at, const fg_evidence_column *column) {
   memcpy(p->values + at * p->rows, column->values, p->rows * sizeof *p->values);
   memcpy(p->along + at * p->rank, column->along, p->rank * sizeof *p->along);
-  p->span[at] = column->span;
-  p->right[at] = column->right;
+  note_column(p, at, column);
 }
 
 size_t fg_evidence_add(fg_evidence_problem *p, const double *values) {
   fg_evidence_column column = {.values = p->values + p->count * p->rows,
                                .along = p->along + p->count * p->rank};
   fg_evidence_make(p, values, p->white, &column);
-  p->span[p->count] = column.span;
-  p->right[p->count] = column.right;
-  return p->count++;
+  return note_column(p, p->count++, &column);
 }
 
 void fg_evidence_put_back(fg_evidence_problem *p, size_t column, double amplitude) {
@@ -276,19 +286,31 @@ void fg_evidence_put_back(fg_evidence_problem *p, size_t column, double amplitud
     p->right[c] = fg_dot_in_lanes(p->values + c * p->rows, p->residual, p->rows);
 }
 
+/* Returns where products of two columns that lie near each other are kept; NULL: they do not. */
+static double *near_product(const fg_evidence_problem *p, size_t a, size_t b) {
+  size_t later = a > b ? a : b, before = a > b ? a - b : b - a;
+  return before < FG_EVIDENCE_NEAR ? p->near + later * FG_EVIDENCE_NEAR + before : NULL;
+}
+
+static double *far_product(fg_evidence_problem *p, size_t column, size_t c) {
+  if (!p->gram[column] && p->gram[c] && !isnan(p->gram[c][column])) return &p->gram[c][column];
+  if (!p->gram[column] && (p->gram[column] = malloc(FG_EVIDENCE_COLUMNS * sizeof(double))))
+    for (size_t k = 0; k < FG_EVIDENCE_COLUMNS; k++)
+      p->gram[column][k] = NAN;
+  return p->gram[column] ? &p->gram[column][c] : NULL;
+}
+
 void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, size_t count,
                           double *into) {
   const double *own = p->values + column * p->rows;
-  if (!p->gram[column] && (p->gram[column] = malloc(FG_EVIDENCE_COLUMNS * sizeof(double))))
-    for (size_t c = 0; c < FG_EVIDENCE_COLUMNS; c++)
-      p->gram[column][c] = NAN;
-  double *known = p->gram[column];
   for (size_t c = first; c < first + count; c++) {
-    double value = known ? known[c] : NAN;
+    double *known = near_product(p, column, c);
+    if (!known) known = far_product(p, column, c);
+    double value = known ? *known : NAN;
     if (isnan(value) && p->gram[c]) value = p->gram[c][column];
     if (isnan(value))
       value = fg_evidence_dot(own, p->span[column], p->values + c * p->rows, p->span[c]);
-    if (known) known[c] = value;
+    if (known) *known = value;
     into[c - first] = value;
   }
 }

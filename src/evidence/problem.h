@@ -9,7 +9,8 @@
 #include "effect/effect.h"
 #include "rows/scatter.h"
 
-enum { FG_EVIDENCE_COLUMNS = 6000 };
+/* Columns of one cause lie beside each other: near ones. */
+enum { FG_EVIDENCE_COLUMNS = 6000, FG_EVIDENCE_NEAR = 128 };
 
 /* Rows [first, last) outside of which a column is 0: it may move one bump or one disc. */
 typedef struct fg_evidence_span {
@@ -33,7 +34,9 @@ typedef struct fg_evidence_problem {
   double *residual_along;
   double *right; /* products with the residual */
   size_t count;
-  double **gram; /* owned; per column: products with the others, NaN: not yet asked for */
+  double *near;  /* owned; FG_EVIDENCE_COLUMNS × FG_EVIDENCE_NEAR: products of a column with itself
+                    and those just before it, NaN: not yet asked for */
+  double **gram; /* owned; the same of some columns with all others */
   double *white; /* all rows */
 } fg_evidence_problem;
 
