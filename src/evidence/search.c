@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/select.h"
 #include "evidence/fit.h"
 #include "evidence/refit.h"
 #include "evidence/unnamed.h"
@@ -286,7 +287,7 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
       s->models[front[k]] = model;
       FG_TRY(extend_model(ctx, s, &model, false));
     }
-    qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+    fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
     if (parts && s->models[1].score <= before + 1) break;
   }
   return FG_OK;
@@ -330,7 +331,7 @@ static fg_status exchange_parts(fg_context *ctx, fg_evidence_search *s) {
   }
   for (size_t b = 0; b < bases; b++)
     FG_TRY(extend_model(ctx, s, &base[b], true));
-  qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+  fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   return FG_OK;
 }
 
@@ -345,7 +346,7 @@ static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
       set_score(s, &shorter);
       keep_model(s, &shorter);
     }
-  qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+  fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   return FG_OK;
 }
 
@@ -386,12 +387,12 @@ fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   FG_TRY(run_rounds(ctx, s));
   for (size_t k = 0; k < s->request.seeds; k++)
     FG_TRY(propose_set(ctx, &s->request.seed[k], k == 0, s));
-  qsort(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
+  fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   for (int round = 0; round < EXCHANGE_ROUNDS; round++)
     FG_TRY(exchange_parts(ctx, s));
   FG_TRY(shorten_models(ctx, s));
   FG_TRY(refit_models(ctx, s));
-  qsort(s->models, s->count, sizeof *s->models, compare_models);
+  fg_sort_items(s->models, s->count, sizeof *s->models, compare_models);
   return FG_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/select.h"
 #include "foilgauge/memory.h"
 
 void fg_sparse_begin(fg_sparse *sparse, int size) {
@@ -72,7 +73,7 @@ fg_status fg_sparse_finish(fg_context *ctx, fg_sparse *sparse) {
   for (size_t i = 0; i < sparse->additions; i++)
     sorted[i] = (placed_addition){(int64_t)sparse->added[1][i] * sparse->size + sparse->added[0][i],
                                   (int)i};
-  qsort(sorted, sparse->additions, sizeof *sorted, compare_additions);
+  fg_sort_items(sorted, sparse->additions, sizeof *sorted, compare_additions);
   fill_pattern(sparse, sorted);
   free(sorted);
   for (int i = 0; i < 2; i++) {

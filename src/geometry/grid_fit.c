@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/select.h"
 #include "foilgauge/grid.h"
 
 enum { ROUNDS = 6, AXES = 2 };
@@ -103,7 +104,7 @@ static int compare_lengths(const void *a, const void *b) {
 
 static double median_of_marks(double *values, size_t count) {
   if (!count) return NAN;
-  qsort(values, count, sizeof *values, compare_lengths);
+  fg_sort_items(values, count, sizeof *values, compare_lengths);
   return values[count / 2];
 }
 

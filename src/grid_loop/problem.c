@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 /* Prior sd of scale, ratio and shear of a board of which nothing is stated: printers err by some
  * parts in a thousand. */
@@ -230,7 +231,7 @@ static bool is_same_component(const grid_row *a, const grid_row *b) {
 
 /* Rows of one component of one mark get one number. */
 static void number_groups(grid_problem *problem) {
-  qsort(problem->rows, problem->row_count, sizeof *problem->rows, compare_rows);
+  fg_sort_items(problem->rows, problem->row_count, sizeof *problem->rows, compare_rows);
   size_t group = 0, component = 0;
   for (size_t i = 0; i < problem->row_count; i++) {
     grid_row *row = &problem->rows[i];

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/text.h"
 
 enum { PO_TEXT_MAX = 4000 };
@@ -165,7 +166,7 @@ fg_status fg_catalogue_read(fg_context *ctx, const char *file, const char *text,
   if (status == FG_OK && !language->tag[0]) status = refuse(po, "there is no header");
   free(po);
   if (status == FG_OK)
-    qsort(language->phrases, language->count, sizeof *language->phrases, compare_phrases);
+    fg_sort_items(language->phrases, language->count, sizeof *language->phrases, compare_phrases);
   return status;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "load_test/local_fit.h"
 
 /* ---- the step of a column ---- */
@@ -28,7 +29,7 @@ double fg_load_find_step(const fg_load_sample *samples, size_t count) {
     return 0;
   for (size_t i = 0; i < n; i++)
     x[i] = samples[i].x_mm;
-  qsort(x, n, sizeof *x, by_value);
+  fg_sort_items(x, n, sizeof *x, by_value);
   double alike = 1e-9 * (x[n - 1] - x[0]); /* rounding of the numbers themselves */
   for (size_t i = 1; i < n; i++) {
     if (x[i] - x[i - 1] <= alike) continue;
@@ -137,7 +138,7 @@ static fg_status first_variance(fg_context *ctx, const fg_load_strokes *strokes,
       all[n] = strokes->stroke[i].scatter[k];
       sum += all[n++];
     }
-  qsort(all, n, sizeof *all, by_value);
+  fg_sort_items(all, n, sizeof *all, by_value);
   *variance = fmax(all[n / 2] / median_square, 1e-4 * sum / (double)n);
   free(all);
   return FG_OK;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
@@ -117,7 +118,7 @@ static void find_windows(const side *s, double window[FG_LOAD_POINTS]) {
     size_t count = 0;
     for (size_t k = g > AROUND ? g - AROUND : 0; k <= g + AROUND && k < FG_LOAD_POINTS; k++)
       if (isfinite(own[k])) around[count++] = own[k];
-    qsort(around, count, sizeof *around, by_size);
+    fg_sort_items(around, count, sizeof *around, by_size);
     window[g] = count ? around[count / 2] : NAN;
   }
 }

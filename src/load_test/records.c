@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "load_test/columns.h"
@@ -214,7 +215,7 @@ static fg_status sort_directions(reading *r) {
   FG_TRY_EXIT(fg_memory_allocate(r->ctx, count, sizeof *now, (void **)&now));
   for (size_t i = 0; i < count; i++)
     places[i] = (place){test->directions[i].bearing, i, test->directions[i].azimuth_deg};
-  if (count) qsort(places, count, sizeof *places, by_place);
+  fg_sort_items(places, count, sizeof *places, by_place);
   for (size_t i = 0; i < count; i++) {
     sorted[i] = test->directions[places[i].old];
     now[places[i].old] = i;
@@ -266,7 +267,7 @@ static fg_status gather_rows(reading *r, fg_load_records *records) {
     file[d] = r->rows[i].file;
     test->samples[next[d]++] = r->rows[i].sample;
   }
-  if (records->count) qsort(records->begin, records->count, sizeof *records->begin, by_number);
+  fg_sort_items(records->begin, records->count, sizeof *records->begin, by_number);
 exit:
   free(next);
   free(file);

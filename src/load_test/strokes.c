@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 /* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
 static const double turn_share = 0.1;
@@ -83,7 +84,7 @@ static fg_status fill_stroke(fg_context *ctx, const fg_load_sample *samples,
     const fg_load_sample *s = &samples[stroke->first + i];
     sorted[i] = (placed){s->x_mm, s->force_n, shuffled(stroke->first + i)};
   }
-  qsort(sorted, count, sizeof *sorted, by_x);
+  fg_sort_items(sorted, count, sizeof *sorted, by_x);
   for (size_t i = 0; i < count; i++) {
     stroke->x[i] = sorted[i].x;
     stroke->f[i] = sorted[i].f;
@@ -206,7 +207,7 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
     for (size_t k = 0; k < chosen[i]->count; k++, n++)
       cells[n] = (cell){without_drift(chosen[i], k), chosen[i]->f[k], chosen[i]->variance[k],
                         chosen[i]->scatter[k], shuffled(n)};
-  qsort(cells, total, sizeof *cells, by_cell);
+  fg_sort_items(cells, total, sizeof *cells, by_cell);
   for (size_t i = 0; i < total; i++) {
     merged->x[i] = cells[i].x;
     merged->f[i] = cells[i].f;

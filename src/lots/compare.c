@@ -47,8 +47,8 @@ static size_t count_shared(const fg_index_lot *a, const fg_index_lot *b) {
 static fg_status mark_shared(fg_context *ctx, fg_index *index, bool *shared) {
   for (size_t i = 0; i < index->read; i++)
     if (index->lots[i].scan_sums)
-      qsort(index->lots[i].scan_sum, index->lots[i].scan_sums, sizeof *index->lots[i].scan_sum,
-            compare_texts);
+      fg_sort_items(index->lots[i].scan_sum, index->lots[i].scan_sums,
+                    sizeof *index->lots[i].scan_sum, compare_texts);
   for (size_t i = 0; i < index->read; i++)
     for (size_t k = i + 1; k < index->read; k++) {
       size_t scans = count_shared(&index->lots[i], &index->lots[k]);

@@ -221,7 +221,7 @@ static fg_status hand_out_marks(fg_context *ctx, const grid_work *work, const fg
                                            .contrast = contrast,
                                            .polarity = polarity_of(work, fit)};
   }
-  qsort(grid->marks, grid->count, sizeof *grid->marks, compare_marks);
+  fg_sort_items(grid->marks, grid->count, sizeof *grid->marks, compare_marks);
   return FG_OK;
 }
 

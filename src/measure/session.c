@@ -414,14 +414,14 @@ static bool is_beside(const fg_foil *a, const fg_foil *b) {
 /* Foils that lie beside the tallest one of a row, from its top on, are that row of the bed. */
 static void sort_foils(fg_measurement *m) {
   if (!m->foil_count) return;
-  qsort(m->foils, m->foil_count, sizeof *m->foils, compare_boxes);
+  fg_sort_items(m->foils, m->foil_count, sizeof *m->foils, compare_boxes);
   for (size_t first = 0; first < m->foil_count;) {
     size_t next = first + 1, tallest = first;
     while (next < m->foil_count && is_beside(&m->foils[next], &m->foils[tallest])) {
       if (m->foils[next].strip.box_px[3] > m->foils[tallest].strip.box_px[3]) tallest = next;
       next++;
     }
-    qsort(m->foils + first, next - first, sizeof *m->foils, compare_columns);
+    fg_sort_items(m->foils + first, next - first, sizeof *m->foils, compare_columns);
     first = next;
   }
   for (size_t i = 0; i < m->foil_count; i++)

@@ -59,7 +59,7 @@ fg_status fg_half_normal_points(fg_context *ctx, const double *estimates, size_t
   if (!count) return fg_fail(ctx, FG_ERR_USAGE, "no effects to plot");
   for (size_t i = 0; i < count; i++)
     points[i] = (fg_half_normal){.effect = i, .magnitude = fabs(estimates[i])};
-  qsort(points, count, sizeof *points, compare_points);
+  fg_sort_items(points, count, sizeof *points, compare_points);
   for (size_t i = 0; i < count; i++)
     points[i].quantile =
         fg_distribution_normal_quantile(0.5 + 0.5 * ((double)i + 0.5) / (double)count);
@@ -207,7 +207,7 @@ static int compare_cells(const void *a, const void *b) {
 /* Pooled over groups of equal key. */
 static double squares_within_cells(cell *cells, size_t count, size_t *dof) {
   double sum = 0;
-  qsort(cells, count, sizeof *cells, compare_cells);
+  fg_sort_items(cells, count, sizeof *cells, compare_cells);
   for (size_t start = 0, end = 0; start < count; start = end) {
     double mean = 0;
     for (end = start; end < count && cells[end].key == cells[start].key; end++)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "process/plan_words.h"
 
@@ -217,7 +218,7 @@ static fg_status shuffle(fg_context *ctx, const fg_plan_options *o, fg_plan *pla
   sort_key *keys = NULL;
   FG_TRY(fg_memory_allocate(ctx, plan->runs, sizeof *keys, (void **)&keys));
   draw_keys(o, plan, keys);
-  qsort(keys, plan->runs, sizeof *keys, compare_keys);
+  fg_sort_items(keys, plan->runs, sizeof *keys, compare_keys);
   bool restricted = is_restricted(o);
   for (size_t i = 0; i < plan->runs; i++) {
     bool same = i && keys[i].plot == keys[i - 1].plot && keys[i].run.block == keys[i - 1].run.block;

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/spread.h"
 #include "rows/edge_fit.h"
 
@@ -80,8 +81,8 @@ static fg_status match_scan(fg_context *ctx, fg_edge_fit *edge_fit, size_t first
     discs[i] = (sized){edge_fit->views[first + i].disc->diameter_mm, first + i};
   for (size_t k = 0; k < known_count; k++)
     discs[count + k] = (sized){design->discs.diameters_mm[k], k};
-  qsort(discs, count, sizeof *discs, compare_sized);
-  qsort(discs + count, known_count, sizeof *discs, compare_sized);
+  fg_sort_items(discs, count, sizeof *discs, compare_sized);
+  fg_sort_items(discs + count, known_count, sizeof *discs, compare_sized);
   match_known_diameters(edge_fit, discs, count, discs + count, known_count, taken);
 exit:
   free(discs);
@@ -180,7 +181,7 @@ static fg_status weigh_discs(fg_context *ctx, fg_edge_fit *edge_fit, size_t bloc
     size_t last = first, v = edge_fit->rows[first].view;
     while (last < edge_fit->row_count && edge_fit->rows[last].view == v)
       last++;
-    qsort(edge_fit->rows + first, last - first, sizeof *edge_fit->rows, compare_places);
+    fg_sort_items(edge_fit->rows + first, last - first, sizeof *edge_fit->rows, compare_places);
     noise[v] = noise_of(edge_fit->views[v].disc, edge_fit->rows + first, last - first, work);
     min = fmin(min, noise[v]);
     first = last;

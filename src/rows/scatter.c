@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/numerics.h"
+#include "core/select.h"
 
 /* Bounds of the range: the scatter of edges is correlated over 0.02 to 0.1 mm of arc on real
  * flatbeds (reports/real); a margin on either side keeps estimates off the bound. */
@@ -241,7 +242,7 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
   FG_TRY(fg_memory_allocate(s->ctx, s->arc_count, sizeof *each, (void **)&each));
   for (size_t k = 0; k < s->arc_count; k++)
     each[k] = s->arcs[k].square / fmax(s->arcs[k].dof, 1);
-  qsort(each, s->arc_count, sizeof *each, compare_squares);
+  fg_sort_items(each, s->arc_count, sizeof *each, compare_squares);
   double median = each[s->arc_count / 2],
          max = each[(size_t)((1 - ARCS_MAX) * (double)s->arc_count)];
   free(each);

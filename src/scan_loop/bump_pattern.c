@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/select.h"
 #include "table_loop/engine_random.h"
 
 /* Draws of the null; number of patterns. */
@@ -45,7 +46,7 @@ static double best_apart(const fg_bump_values *at, double *by, double *limit) {
   double whole = square_about_mean(value, n, &mean);
   for (size_t i = 0; i < n; i++)
     sorted[i] = value[i];
-  qsort(sorted, n, sizeof *sorted, ascending);
+  fg_sort_items(sorted, n, sizeof *sorted, ascending);
   size_t max = (size_t)(largest_share * (double)n);
   for (int top = 0; top < 2; top++) {
     double sum = 0;

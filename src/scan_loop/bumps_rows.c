@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/foil_kind.h"
 #include "scan_loop/bumps.h"
 
@@ -99,7 +100,7 @@ fg_status fg_scan_loop_bumps_collect(fg_context *ctx, const fg_scan_loop_bumps_r
   for (size_t i = 0; i < bumps->count; i++)
     divide(&bumps->bump[i], views[i]);
   free(views);
-  qsort(bumps->bump, bumps->count, sizeof *bumps->bump, by_place);
+  fg_sort_items(bumps->bump, bumps->count, sizeof *bumps->bump, by_place);
   for (size_t i = 0; i < bumps->count; i++)
     bumps->parts += !i || bumps->bump[i].part != bumps->bump[i - 1].part;
   return FG_OK;

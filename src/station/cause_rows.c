@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 enum { ROWS_MAX = 1500, GROUP_BYTES = 24 };
 #define HOURS_OF_ROW 2.0
@@ -30,7 +31,7 @@ static fg_status split_cells(fg_context *ctx, const fg_cause_data *data, const s
   FG_TRY_EXIT(fg_memory_allocate(ctx, data->foils, sizeof *number, (void **)&number));
   for (size_t i = 0; i < data->foils; i++)
     sorted[i] = (cell_key){cell[i], key[i], i};
-  qsort(sorted, data->foils, sizeof *sorted, compare_keys);
+  fg_sort_items(sorted, data->foils, sizeof *sorted, compare_keys);
   for (size_t i = 0; i < data->foils; i++) {
     groups += !i || sorted[i].cell != sorted[i - 1].cell || sorted[i].key != sorted[i - 1].key;
     cell[sorted[i].foil] = groups - 1;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/date.h"
+#include "core/select.h"
 #include "foilgauge/words.h"
 #include "lot/run/lot.h"
 #include "lot/run/record.h"
@@ -99,7 +100,7 @@ static fg_status keep_deciding(fg_context *ctx, sqlite3 *writer, fg_decision *de
   int64_t quantity;
   fg_status status = FG_OK;
   if (decision->count)
-    qsort(decision->judgements, decision->count, sizeof *decision->judgements, by_severity);
+    fg_sort_items(decision->judgements, decision->count, sizeof *decision->judgements, by_severity);
   fg_query_begin(
       writer,
       "INSERT INTO deciding (foil, rank, quantity, bump, value, u, lower, upper, verdict)"

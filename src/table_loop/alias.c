@@ -11,6 +11,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "table_loop/between.h"
 
@@ -306,7 +307,7 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
         !fg_engine_same_candidate(&stand[c].candidate, &winner->candidate) &&
         !fg_engine_same_cycle(&stand[c].candidate, &winner->candidate))
       pool[listed++] = &stand[c];
-  qsort(pool, listed, sizeof *pool, by_gain);
+  fg_sort_items(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
     alias_test test;
     FG_TRY_EXIT(compare_with_rival(ctx, &workspace, winner, pool[c], NULL, winner_fit, &test));

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "table_loop/parts.h"
 
@@ -42,7 +43,7 @@ static fg_status one_to_one(fg_context *ctx, size_t rows, const fg_loop_coordina
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *pair, (void **)&pair));
   for (size_t i = 0; i < rows; i++)
     pair[i] = (value_pair){a->value[i], b->value[i]};
-  qsort(pair, rows, sizeof *pair, by_values);
+  fg_sort_items(pair, rows, sizeof *pair, by_values);
   for (size_t i = 1; i < rows; i++)
     pairs += by_values(&pair[i - 1], &pair[i]) != 0;
   *same = pairs == a->distinct;

@@ -6,6 +6,7 @@
 
 #include "core/extended.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "table_loop/engine.h"
 #include "table_loop/places.h"
@@ -77,7 +78,7 @@ static fg_status sort_rows(fg_context *ctx, const fg_loop_table_state *build) {
     key[i].row = i;
     key[i].order = order ? order[i].value : (double)i;
   }
-  qsort(key, rows, sizeof *key, by_key);
+  fg_sort_items(key, rows, sizeof *key, by_key);
   for (size_t i = 0; i < rows; i++) {
     out->row[i] = key[i].row;
     out->problem.group[i] = build->spec->group ? key[i].group : i;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "table_loop/residual_tests.h"
 
 /* Minimum number of differences between repeats for estimating their scatter. */
@@ -64,7 +65,7 @@ fg_status fg_engine_cells_open(fg_context *ctx, const fg_engine_training *traini
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *rows, (void **)&rows));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *cells->cell, (void **)&cells->cell));
   fill_keys(training, width, key, rows);
-  qsort(rows, n, sizeof *rows, by_key);
+  fg_sort_items(rows, n, sizeof *rows, by_key);
   for (size_t i = 0; i < n; i++) {
     cells->count += i == 0 || by_key(&rows[i], &rows[i - 1]);
     cells->cell[rows[i].row] = cells->count - 1;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "table_loop/engine.h"
 
 typedef struct level_key {
@@ -30,7 +31,7 @@ static fg_status group_rows(fg_context *ctx, size_t coordinate, fg_engine_traini
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *key, (void **)&key));
   for (size_t i = 0; i < n; i++)
     key[i] = (level_key){level_at(training->problem, coordinate, training->row[i]), i};
-  qsort(key, n, sizeof *key, by_level);
+  fg_sort_items(key, n, sizeof *key, by_level);
   training->levels = 0;
   for (size_t i = 0; i < n; i++) {
     training->level_row[i] = key[i].at;
@@ -52,7 +53,7 @@ static fg_status group_blocks(fg_context *ctx, size_t coordinate, fg_engine_trai
     size_t row = training->row[fg_engine_level_row(training, training->level_start[b])];
     key[b] = (level_key){level_at(training->problem, coordinate, row), b};
   }
-  qsort(key, blocks, sizeof *key, by_level);
+  fg_sort_items(key, blocks, sizeof *key, by_level);
   for (size_t b = 0; b < blocks; b++) {
     training->outer_block[b] = key[b].at;
     if (b == 0 || key[b].level != key[b - 1].level) training->outer_start[training->outers++] = b;

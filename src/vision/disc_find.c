@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/select.h"
 #include "vision/cv_bridge.h"
 #include "vision/disc_contour.h"
 #include "vision/reduce.h"
@@ -182,9 +183,9 @@ static fg_status choose_circles(fg_context *ctx, const search *s, fg_disc_candid
     ranks[i].index = i;
     ranks[i].support = support_of(all, count, i, cell, &ranks[i].levels);
   }
-  qsort(ranks, count, sizeof *ranks, compare_ranked);
+  fg_sort_items(ranks, count, sizeof *ranks, compare_ranked);
   keep_best(all, ranks, count, cell, found);
-  qsort(found->list, found->count, sizeof *found->list, compare_candidates);
+  fg_sort_items(found->list, found->count, sizeof *found->list, compare_candidates);
 exit:
   free(all);
   free(ranks);

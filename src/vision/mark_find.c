@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "vision/grid.h"
 #include "vision/mark_find.h"
 
@@ -160,7 +161,7 @@ static fg_status find_common_size(fg_context *ctx, const object_search *search, 
   for (int32_t i = 0; i < search->blob_count; i++)
     if (can_be_mark(&search->objects[i], kind))
       sizes[count++] = mark_size(&search->objects[i], kind);
-  qsort(sizes, count, sizeof *sizes, compare_sizes);
+  fg_sort_items(sizes, count, sizeof *sizes, compare_sizes);
   for (size_t i = 0, low = 0, high = 0; i < count; i++) {
     while (sizes[low] * AREA_FACTOR < sizes[i])
       low++;

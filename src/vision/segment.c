@@ -164,7 +164,7 @@ static fg_status collect_objects(fg_context *ctx, const fg_blob *blobs, int32_t 
                           y + b->height >= out->tiles->block_rows};
   }
   if (out->object_count)
-    qsort(out->objects, out->object_count, sizeof *out->objects, compare_objects);
+    fg_sort_items(out->objects, out->object_count, sizeof *out->objects, compare_objects);
   return FG_OK;
 }
 

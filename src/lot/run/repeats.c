@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "lot/run/lot.h"
 
@@ -39,7 +40,7 @@ fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot) {
   FG_TRY(fg_memory_allocate(ctx, items, sizeof(fg_record *), (void **)&record));
   for (size_t i = 0; i < items; i++)
     record[i] = &lot->records[i];
-  qsort(record, items, sizeof *record, compare_sums);
+  fg_sort_items(record, items, sizeof *record, compare_sums);
   fg_status status = FG_OK;
   for (size_t i = 1, first = 0; i < items && status == FG_OK; i++) {
     bool same = record[i]->sha256[0] && !strcmp(record[i]->sha256, record[first]->sha256);

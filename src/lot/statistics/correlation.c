@@ -61,7 +61,7 @@ fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, s
     owner[i] = i;
     if (*name) parts[count++] = (part){name, foil->foil->number, i};
   }
-  qsort(parts, count, sizeof *parts, compare_parts);
+  fg_sort_items(parts, count, sizeof *parts, compare_parts);
   for (size_t i = 1; i < count; i++)
     if (!strcmp(parts[i].name, parts[i - 1].name) && parts[i].number == parts[i - 1].number)
       owner[parts[i].at] = owner[parts[i - 1].at];

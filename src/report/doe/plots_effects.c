@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/distribution.h"
 #include "page/page.h"
 #include "report/doe/axes.h"
@@ -32,7 +33,7 @@ static size_t collect_bars(const fg_experiment *e, bar *bars) {
     double size = fabs(has_error ? e->effect[j].t : e->effect[j].contrast);
     if (fg_experiment_of_interest(e, j) && isfinite(size)) bars[count++] = (bar){j, size};
   }
-  qsort(bars, count, sizeof *bars, compare_bars);
+  fg_sort_items(bars, count, sizeof *bars, compare_bars);
   return count;
 }
 

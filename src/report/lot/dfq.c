@@ -11,6 +11,7 @@
 
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "foilgauge/traceability.h"
 #include "foilgauge/words.h"
@@ -166,7 +167,7 @@ static int is_of_foil(const void *a, const void *b) {
 /* Puts the foils in the order of the lot, then the bearings. */
 static void put_all_parts(FILE *out, const fg_lot_analysis *analysis, fg_measured_part *parts,
                           size_t part_count, const fg_characteristic *list, size_t count) {
-  qsort(parts, part_count, sizeof *parts, is_of_foil);
+  fg_sort_items(parts, part_count, sizeof *parts, is_of_foil);
   for (size_t i = 0; i < part_count; i++)
     put_part_values(out, analysis, &parts[i], list, count);
 }

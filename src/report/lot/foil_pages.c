@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/folder.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/sha256.h"
 #include "core/text.h"
 
@@ -159,7 +160,7 @@ static fg_status remove_stale_pages(fg_context *ctx, const char *folder, const f
   char **kept = block;
   for (size_t i = 0; i < lot->manifest.items; i++)
     if (names[i]) kept[count++] = names[i];
-  qsort(kept, count, sizeof *kept, compare_page_names);
+  fg_sort_items(kept, count, sizeof *kept, compare_page_names);
   fg_status status = remove_unkept_pages(ctx, folder, kept, count);
   free(kept);
   return status;

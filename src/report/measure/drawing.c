@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "report/measure/draw_beams.h"
 
 static const double pi = 3.14159265358979323846;
@@ -45,7 +46,7 @@ static double large_residual(const fg_measurement *measurement) {
       if (foil->labels[k].fitted && isfinite(foil->labels[k].residual_um))
         sizes[count++] = fabsf(foil->labels[k].residual_um);
     if (count) {
-      qsort(sizes, count, sizeof *sizes, compare_floats);
+      fg_sort_items(sizes, count, sizeof *sizes, compare_floats);
       largest = fmax(largest, (double)sizes[(count - 1) * 99 / 100]);
     }
     free(sizes);

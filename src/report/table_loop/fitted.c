@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "report/table_loop/panel.h"
 
 static int by_place(const void *a, const void *b) {
@@ -51,7 +52,7 @@ fg_status fg_loop_fitted_put(fg_context *ctx, FILE *out, const fg_loop_report *r
   for (size_t i = 0; i < problem->rows; i++)
     panel.line[i] = (fg_loop_point){at->value[i], problem->response[i] - left[i]};
   panel.points = problem->rows;
-  qsort(panel.line, panel.points, sizeof *panel.line, by_place);
+  fg_sort_items(panel.line, panel.points, sizeof *panel.line, by_place);
   set_ordinate(problem->response, problem->rows, &panel);
   panel.dashes = at->levels || !is_function(&panel) || !is_smooth(&panel);
   fg_status status = fg_loop_panel_put(ctx, out, report, &panel);

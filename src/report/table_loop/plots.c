@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/spread.h"
 #include "core/text.h"
 #include "page/page.h"
@@ -80,7 +81,7 @@ static fg_status draw_levels(fg_context *ctx, const fg_loop_problem *problem, co
   for (size_t i = 0; i < problem->rows; i++)
     if (isfinite(panel->at->value[i]))
       line[rows++] = (fg_loop_point){panel->at->value[i], effect[i] - mean};
-  qsort(line, rows, sizeof *line, by_x);
+  fg_sort_items(line, rows, sizeof *line, by_x);
   for (size_t i = 0, next; i < rows; i = next) {
     double x = line[i].x, sum = 0;
     for (next = i; next < rows && line[next].x == x; next++)
@@ -105,8 +106,8 @@ static fg_status draw_loop(fg_context *ctx, const fg_loop_problem *problem,
         panel->line[panel->points++] = (fg_loop_point){panel->at->value[i], effect[i] - mean};
     if (!back) up = panel->points;
   }
-  qsort(panel->line, up, sizeof *panel->line, by_x);
-  qsort(panel->line + up, panel->points - up, sizeof *panel->line, by_x);
+  fg_sort_items(panel->line, up, sizeof *panel->line, by_x);
+  fg_sort_items(panel->line + up, panel->points - up, sizeof *panel->line, by_x);
   for (size_t i = up, k = panel->points; i + 1 < k; i++) {
     fg_loop_point other = panel->line[--k];
     panel->line[k] = panel->line[i];

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "foilgauge/loop_table.h"
@@ -233,7 +234,7 @@ static void print_rejected(const fg_loop_report *report, FILE *out) {
   if (!list) return;
   for (size_t i = 0; i < result->rejects; i++)
     list[i] = &result->rejected[i];
-  qsort(list, result->rejects, sizeof *list, by_rejected_p);
+  fg_sort_items(list, result->rejects, sizeof *list, by_rejected_p);
   size_t shown = result->rejects < SHOWN ? result->rejects : SHOWN;
   fputc('\n', out);
   fg_members_terminal(out, "", &fg_loop_rejected_members, &(fg_subject){list, report, shown},
