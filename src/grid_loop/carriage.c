@@ -23,7 +23,7 @@ static void find_strips(const grid_problem *problem, const grid_solution *soluti
     means[k] = empty;
   for (size_t i = 0; i < problem->row_count; i++) {
     const grid_row *row = &problem->rows[i];
-    double strip = (row->at.y - problem->frame.low_mm[1]) / pitch;
+    double strip = (row->at.y - problem->model.frame.low_mm[1]) / pitch;
     if (row->scan != scan || !row->used || fabs(row->direction.y) < ALONG_MIN) continue;
     if (!(strip >= 0 && strip < STRIPS_MAX)) continue;
     means[(size_t)strip].sum += solution->residual[i] / row->direction.y;
@@ -49,7 +49,7 @@ static void add_pose_scan(const grid_problem *problem, const strip_mean means[ST
     sums->over_scans[k].sum += mean;
     sums->over_scans[k].count++;
     sums->square[k] += mean * mean;
-    sums->noise[k] += problem->mark_sd * problem->mark_sd / means[k].count;
+    sums->noise[k] += problem->model.mark_sd * problem->model.mark_sd / means[k].count;
   }
 }
 

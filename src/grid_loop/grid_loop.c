@@ -57,9 +57,9 @@ static fg_status find_likelihood(fg_context *ctx, const grid_problem *problem, d
 /* Listed effects first, beside the boards alone; then the maps, and listed effects again beside
  * them. */
 static fg_status build_model(fg_context *ctx, grid_problem *problem) {
-  bool map = problem->has_map, board_map = problem->has_board_map;
+  bool map = problem->model.has_map, board_map = problem->model.has_board_map;
   double without, with;
-  problem->has_map = problem->has_board_map = false;
+  problem->model.has_map = problem->model.has_board_map = false;
   fg_grid_begin_effects(problem);
   FG_TRY(fg_grid_find_sizes(ctx, problem));
   if (map) FG_TRY(fg_grid_add_effects(ctx, problem));
@@ -67,14 +67,14 @@ static fg_status build_model(fg_context *ctx, grid_problem *problem) {
   if (!map) return FG_OK;
   FG_TRY(find_likelihood(ctx, problem, &without));
   grid_problem kept = *problem;
-  problem->has_map = true;
-  problem->has_board_map = board_map;
+  problem->model.has_map = true;
+  problem->model.has_board_map = board_map;
   FG_TRY(fg_grid_find_sizes(ctx, problem));
   FG_TRY(find_likelihood(ctx, problem, &with));
   if (without - with < MAP_LIKELIHOOD) {
-    problem->has_map = problem->has_board_map = false;
-    problem->mark_sd = kept.mark_sd;
-    problem->board_sd = kept.board_sd;
+    problem->model.has_map = problem->model.has_board_map = false;
+    problem->model.mark_sd = kept.model.mark_sd;
+    problem->model.board_sd = kept.model.board_sd;
   }
   FG_TRY(fg_grid_refine_effects(ctx, problem));
   FG_TRY(fg_grid_prune_effects(ctx, problem));

@@ -14,8 +14,8 @@ enum { FOLDS = 5, MARKS_TO_HOLD_OUT = 40 };
 /* The same model without what the loop found: poses, and the scale where no pitch is stated. */
 static grid_problem bare_problem(const grid_problem *problem) {
   grid_problem bare = *problem;
-  bare.effects = 0;
-  bare.has_map = bare.has_board_map = false;
+  bare.model.effects = 0;
+  bare.model.has_map = bare.model.has_board_map = false;
   for (size_t i = 0; i < bare.board_count; i++)
     bare.board[i].u_scale = 1e-9;
   return bare;
@@ -98,11 +98,11 @@ static void find_own_columns(const grid_problem *problem, const grid_columns *co
 static bool fit_own(const grid_problem *problem, const grid_solution *solution, size_t scan,
                     double x[OWN]) {
   fg_normal_equations system;
-  double own[OWN], weight = 1 / (problem->mark_sd * problem->mark_sd);
+  double own[OWN], weight = 1 / (problem->model.mark_sd * problem->model.mark_sd);
   fg_normal_clear(&system, OWN);
   for (size_t i = 0; i < problem->row_count; i++) {
     const grid_row *row = &problem->rows[i];
-    if (row->scan != scan || !row->used || !is_in_region(&problem->frame, row->at)) continue;
+    if (row->scan != scan || !row->used || !is_in_region(&problem->model.frame, row->at)) continue;
     find_own_columns(problem, &solution->columns, row, own);
     fg_normal_add(&system, own, solution->residual[i], weight);
   }
@@ -121,7 +121,7 @@ static held_out_sum sum_held_out(const grid_problem *problem, const grid_solutio
   if (!fit_own(problem, solution, scan, x)) return sum;
   for (size_t i = 0; i < problem->row_count; i++) {
     const grid_row *row = &problem->rows[i];
-    if (row->scan != scan || !row->used || !is_in_region(&problem->frame, row->at)) continue;
+    if (row->scan != scan || !row->used || !is_in_region(&problem->model.frame, row->at)) continue;
     double residual = solution->residual[i];
     find_own_columns(problem, &solution->columns, row, own);
     for (size_t k = 0; k < OWN; k++)
@@ -156,19 +156,7 @@ static fg_status find_scans_held_out(fg_context *ctx, const fg_grid_loop *loop,
 /* The loop's model over the rows of all scans. Outliers are those of the loop; of scans held out
  * the lattice's own. */
 static void take_model(const grid_problem *from, size_t scans, grid_problem *to) {
-  to->frame = from->frame;
-  to->effects = from->effects;
-  for (size_t e = 0; e < from->effects; e++)
-    to->effect[e] = from->effect[e];
-  to->has_map = from->has_map;
-  to->has_board_map = from->has_board_map;
-  to->map = from->map;
-  to->board_map = from->board_map;
-  to->turned = from->turned;
-  to->mark_sd = from->mark_sd;
-  to->board_sd = from->board_sd;
-  to->map_size = from->map_size;
-  to->board_map_size = from->board_map_size;
+  to->model = from->model;
   for (size_t i = 0; i < to->row_count; i++)
     to->rows[i].held_out = to->rows[i].scan >= scans;
 }

@@ -26,7 +26,7 @@ static double gap_beside(const grid_problem *problem, int axis, double jump, dou
 /* Displacement at a jump, behind it less before. */
 static fg_point jump_of(const fg_grid_loop *loop, const grid_effect *effect, size_t column,
                         fg_point at, double jump) {
-  const fg_field_frame *frame = &loop->problem.frame;
+  const fg_field_frame *frame = &loop->problem.model.frame;
   double a = gsl_vector_get(loop->solution.estimate, column);
   fg_point before = at, behind = at, low[FG_FIELD_COLUMNS], high[FG_FIELD_COLUMNS];
   *(effect->kind->axis ? &before.y : &before.x) = jump - BESIDE_MM;
@@ -40,8 +40,8 @@ fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at) {
   const grid_problem *problem = &loop->problem;
   fg_point variance = {0, 0};
   size_t column = loop->solution.columns.effect;
-  for (size_t e = 0; e < problem->effects; e++) {
-    const grid_effect *effect = &problem->effect[e];
+  for (size_t e = 0; e < problem->model.effects; e++) {
+    const grid_effect *effect = &problem->model.effect[e];
     int axis = effect->kind->axis;
     if (effect->kind->jumps) {
       double along = fg_point_along(at, axis), jump = nearest_jump(effect, along);
@@ -59,7 +59,7 @@ fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at) {
 
 double fg_grid_jump_u_mm(const grid_problem *problem, const grid_effect *effect) {
   int axis = effect->kind->axis;
-  double jump = nearest_jump(effect, problem->frame.centre_mm[axis]), gap = 0;
+  double jump = nearest_jump(effect, problem->model.frame.centre_mm[axis]), gap = 0;
   if (!effect->kind->jumps) return 0;
   for (double side = -1; side <= 1; side += 2)
     gap += gap_beside(problem, axis, jump, side);

@@ -129,7 +129,7 @@ fg_status fg_grid_match_scans(fg_context *ctx, const fg_measurement *measurement
     problem->turns[i] = options->turns[i];
     FG_TRY(match_scan(ctx, &measurements[0], &measurements[i], &problem->turns[i],
                       problem->offset[i]));
-    problem->turned |= problem->turns[i] % 2 != problem->turns[0] % 2;
+    problem->model.turned |= problem->turns[i] % 2 != problem->turns[0] % 2;
   }
   return FG_OK;
 }

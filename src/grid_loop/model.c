@@ -71,10 +71,10 @@ static fg_status factor_covariance(fg_context *ctx, mode_work *work) {
       gsl_matrix_set(
           work->factor, i, j,
           widening * gsl_matrix_get(loop->solution.covariance, work->first + i, work->first + j));
-  for (size_t e = 0; e < loop->problem.effects; e++) {
-    size_t columns = fg_grid_effect_columns(&loop->problem.effect[e]);
+  for (size_t e = 0; e < loop->problem.model.effects; e++) {
+    size_t columns = fg_grid_effect_columns(&loop->problem.model.effect[e]);
     for (size_t k = 0; k < columns; k++, at++) {
-      if (is_smooth(loop->problem.effect[e].kind)) continue;
+      if (is_smooth(loop->problem.model.effect[e].kind)) continue;
       for (size_t j = 0; j < n; j++) {
         gsl_matrix_set(work->factor, at, j, 0);
         gsl_matrix_set(work->factor, j, at, 0);
@@ -242,7 +242,7 @@ static fg_status make_map(fg_context *ctx, fg_grid_loop *loop, fg_scanner_model 
   mode_work work = {
       .loop = loop, .first = columns->effect, .count = columns->board_map - columns->effect};
   fg_status status = FG_OK;
-  map->frame = loop->problem.map;
+  map->frame = loop->problem.model.map;
   size_t numbers = 2 * fg_map_splines(&map->frame);
   FG_TRY_EXIT(fg_memory_allocate(ctx, numbers, sizeof *map->mm, (void **)&map->mm));
   for (size_t k = 0; k < numbers; k++)
@@ -264,7 +264,7 @@ exit:
  * together: amplitudes and a shape depend on each other. */
 static double u_of_effect(const fg_grid_loop *loop, const grid_effect *effect, size_t first) {
   enum { STEPS = 40 };
-  const fg_field_frame *frame = &loop->problem.frame;
+  const fg_field_frame *frame = &loop->problem.model.frame;
   size_t own = effect->kind->columns, n = fg_grid_effect_columns(effect);
   double variance = 0, unit = 0;
   for (int i = 0; i <= STEPS; i++) {
@@ -287,12 +287,12 @@ static double u_of_effect(const fg_grid_loop *loop, const grid_effect *effect, s
 static void make_fields(const fg_grid_loop *loop, fg_scanner_model *model) {
   const grid_problem *problem = &loop->problem;
   size_t at = loop->solution.columns.effect;
-  model->fields.frame = problem->frame;
-  for (size_t e = 0; e < problem->effects; e++) {
-    const grid_effect *effect = &problem->effect[e];
+  model->fields.frame = problem->model.frame;
+  for (size_t e = 0; e < problem->model.effects; e++) {
+    const grid_effect *effect = &problem->model.effect[e];
     fg_field field = fg_effect_field(effect->kind);
     bool tied = loop->result.claim[e].verdict == FG_GRID_TIED;
-    bool in_modes = problem->has_map && is_smooth(effect->kind);
+    bool in_modes = problem->model.has_map && is_smooth(effect->kind);
     double u = in_modes ? 0 : u_of_effect(loop, effect, at);
     for (size_t k = 0; k < effect->kind->columns; k++) {
       field.amplitude_mm[k] = gsl_vector_get(loop->solution.estimate, at + k);
@@ -320,7 +320,7 @@ fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop) {
   model->artefact = first->design.artefact;
   fg_scanner_model_take_temperature(&first->design.calibration, model);
   make_fields(loop, model);
-  if (loop->problem.has_map && loop->result.axes_known) FG_TRY(make_map(ctx, loop, model));
+  if (loop->problem.model.has_map && loop->result.axes_known) FG_TRY(make_map(ctx, loop, model));
   return FG_OK;
 }
 

@@ -57,13 +57,14 @@ size_t fg_grid_effect_moves(const grid_effect *effect, const fg_field_frame *fra
 grid_columns fg_grid_columns(const grid_problem *problem) {
   grid_columns c = {0};
   size_t effect_columns = 0;
-  for (size_t e = 0; e < problem->effects; e++)
-    effect_columns += fg_grid_effect_columns(&problem->effect[e]);
+  for (size_t e = 0; e < problem->model.effects; e++)
+    effect_columns += fg_grid_effect_columns(&problem->model.effect[e]);
   c.board = GRID_POSE * problem->scan_count;
   c.effect = c.board + GRID_AFFINE * problem->board_count;
   c.map = c.effect + effect_columns;
-  c.board_map = c.map + (problem->has_map ? 2 * fg_map_splines(&problem->map) : 0);
-  c.count = c.board_map + (problem->has_board_map ? 2 * fg_map_splines(&problem->board_map) : 0);
+  c.board_map = c.map + (problem->model.has_map ? 2 * fg_map_splines(&problem->model.map) : 0);
+  c.count = c.board_map +
+            (problem->model.has_board_map ? 2 * fg_map_splines(&problem->model.board_map) : 0);
   return c;
 }
 
@@ -100,19 +101,19 @@ size_t fg_grid_row_columns(const grid_problem *problem, const grid_columns *colu
     value[n] = affine[k];
   }
   size_t at = columns->effect;
-  for (size_t f = 0; f < problem->effects; f++) {
-    const grid_effect *effect = &problem->effect[f];
+  for (size_t f = 0; f < problem->model.effects; f++) {
+    const grid_effect *effect = &problem->model.effect[f];
     fg_point d[FG_FIELD_COLUMNS];
-    size_t own = fg_grid_effect_moves(effect, &problem->frame, row->at, d);
+    size_t own = fg_grid_effect_moves(effect, &problem->model.frame, row->at, d);
     for (size_t k = 0; k < own; k++, n++) {
       index[n] = at++;
       value[n] = e.x * d[k].x + e.y * d[k].y;
     }
   }
-  if (problem->has_map)
-    n += add_map_columns(&problem->map, columns->map, row->at, e, index + n, value + n);
-  if (problem->has_board_map)
-    n += add_map_columns(&problem->board_map, columns->board_map, p,
+  if (problem->model.has_map)
+    n += add_map_columns(&problem->model.map, columns->map, row->at, e, index + n, value + n);
+  if (problem->model.has_board_map)
+    n += add_map_columns(&problem->model.board_map, columns->board_map, p,
                          (fg_point){-on_board.x, -on_board.y}, index + n, value + n);
   return n;
 }
@@ -275,7 +276,7 @@ static void find_boards(const fg_measurement *measurements, size_t count, bool s
 
 /* The region of all marks is that of the fields. */
 static void find_region(grid_problem *problem) {
-  fg_field_frame *frame = &problem->frame;
+  fg_field_frame *frame = &problem->model.frame;
   for (int axis = 0; axis < 2; axis++) {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < problem->row_count; i++) {
@@ -316,9 +317,10 @@ static void lay_maps(grid_problem *problem) {
       high[axis] = fmax(high[axis], fg_point_along(row->place, axis));
     }
   }
-  problem->has_map = lay_map(problem->frame.low_mm, problem->frame.high_mm, marks, &problem->map);
-  problem->has_board_map =
-      problem->has_map && problem->turned && lay_map(low, high, marks, &problem->board_map);
+  problem->model.has_map = lay_map(problem->model.frame.low_mm, problem->model.frame.high_mm, marks,
+                                   &problem->model.map);
+  problem->model.has_board_map = problem->model.has_map && problem->model.turned &&
+                                 lay_map(low, high, marks, &problem->model.board_map);
 }
 
 fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measurements, size_t count,

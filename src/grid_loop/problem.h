@@ -54,6 +54,18 @@ typedef struct grid_board {
   double u_scale;  /* prior sd of scale, ratio and shear each */
 } grid_board;
 
+/* Model of scanner and boards, common to all scans. */
+typedef struct grid_model {
+  fg_field_frame frame;
+  bool turned;
+  grid_effect effect[GRID_EFFECTS_MAX];
+  size_t effects;
+  bool has_map, has_board_map;
+  fg_map_frame map, board_map;
+  /* sizes: of a mark in a scan, of a board's mark, mm; prior of the maps' bends */
+  double mark_sd, board_sd, map_size, board_map_size;
+} grid_model;
+
 typedef struct grid_problem {
   const fg_design_grid *design;
   fg_grid_certificate certificate; /* owned; no columns: none */
@@ -64,14 +76,8 @@ typedef struct grid_problem {
   size_t board_of[FG_GRID_SCANS];
   int turns[FG_GRID_SCANS], offset[FG_GRID_SCANS][2]; /* from lattice indices to the board's */
   grid_board board[FG_GRID_SCANS];
-  fg_field_frame frame;
-  bool turned, scale_known;
-  grid_effect effect[GRID_EFFECTS_MAX];
-  size_t effects;
-  bool has_map, has_board_map;
-  fg_map_frame map, board_map;
-  /* sizes: of a mark in a scan, of a board's mark, mm; prior of the maps' bends */
-  double mark_sd, board_sd, map_size, board_map_size;
+  bool scale_known;
+  grid_model model;
 } grid_problem;
 
 /* Columns of the model, in this order: poses, boards, effects, map, board's map. */

@@ -71,7 +71,7 @@ static candidate_products project_candidate(grid_score_work *work, const grid_ef
     fg_point d[FG_FIELD_COLUMNS];
     double c[GRID_EFFECT_COLUMNS] = {0};
     if (!row->used) continue;
-    candidate->kind->glass(&problem->frame, candidate->shape, row->at, d);
+    candidate->kind->glass(&problem->model.frame, candidate->shape, row->at, d);
     for (size_t k = 0; k < columns; k++)
       c[k] = row->direction.x * d[k].x + row->direction.y * d[k].y;
     for (size_t k = 0; k < columns; k++) {
@@ -89,7 +89,7 @@ static candidate_products project_candidate(grid_score_work *work, const grid_ef
 /* Takes what the model's columns explain of the candidate's out of their products. */
 static void take_model_out(grid_score_work *work, size_t columns, candidate_products *products) {
   size_t count = work->solution->columns.count;
-  double mark2 = work->problem->mark_sd * work->problem->mark_sd;
+  double mark2 = work->problem->model.mark_sd * work->problem->model.mark_sd;
   double *solved = work->cross + GRID_EFFECT_COLUMNS * count;
   for (size_t a = 0; a < columns; a++)
     for (size_t i = 0; i < count; i++)

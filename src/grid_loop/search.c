@@ -22,7 +22,7 @@ void fg_grid_begin_effects(grid_problem *problem) {
   for (int scales = 0; scales <= problem->scale_known; scales++)
     for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind))
       if (scales ? kind->scales : kind->ring == FG_EFFECT_RING_OF_SCANNER)
-        problem->effect[problem->effects++] = (grid_effect){.kind = kind};
+        problem->model.effect[problem->model.effects++] = (grid_effect){.kind = kind};
 }
 
 size_t fg_grid_own_effects(const grid_problem *problem) {
@@ -30,8 +30,8 @@ size_t fg_grid_own_effects(const grid_problem *problem) {
 }
 
 static bool is_in_model(const grid_problem *problem, const fg_effect *kind) {
-  for (size_t e = 0; e < problem->effects; e++)
-    if (problem->effect[e].kind == kind) return true;
+  for (size_t e = 0; e < problem->model.effects; e++)
+    if (problem->model.effect[e].kind == kind) return true;
   return false;
 }
 
@@ -47,7 +47,7 @@ static bool is_candidate(const grid_problem *problem, const fg_effect *kind) {
 /* A start of a candidate, and how far from it its shapes may lie. */
 static grid_effect candidate_of(const grid_problem *problem, const fg_effect *kind, size_t start,
                                 double reach[FG_FIELD_SHAPES]) {
-  const fg_field_frame *frame = &problem->frame;
+  const fg_field_frame *frame = &problem->model.frame;
   grid_effect candidate = {.kind = kind};
   reach[0] = reach[1] = 0;
   if (kind->polynomial != FG_EFFECT_NO_POLYNOMIAL) {
@@ -67,7 +67,7 @@ static grid_effect candidate_of(const grid_problem *problem, const fg_effect *ki
 /* A ripple of which the marks show less than two places a period could be another one; one that is
  * longer than half the region belongs to a map. */
 static bool is_no_ripple(const grid_problem *problem, const grid_effect *candidate) {
-  double length = problem->frame.high_mm[1] - problem->frame.low_mm[1];
+  double length = problem->model.frame.high_mm[1] - problem->model.frame.low_mm[1];
   return candidate->kind->numbers == FG_EFFECT_WAVE &&
          (candidate->shape[0] < 2 * problem->board[0].pitch_mm ||
           candidate->shape[0] > 0.5 * length);
@@ -141,9 +141,9 @@ static bool find_best_effect(grid_score_work *work, grid_effect *best) {
 
 fg_status fg_grid_add_effects(fg_context *ctx, grid_problem *problem) {
   fg_status status = FG_OK;
-  double kept = problem->board_sd;
-  problem->board_sd = 0; /* rows count alone in scores */
-  for (bool found = true; found && problem->effects < GRID_EFFECTS_MAX && status == FG_OK;) {
+  double kept = problem->model.board_sd;
+  problem->model.board_sd = 0; /* rows count alone in scores */
+  for (bool found = true; found && problem->model.effects < GRID_EFFECTS_MAX && status == FG_OK;) {
     grid_solution solution;
     grid_score_work work;
     grid_effect best = {0};
@@ -151,11 +151,11 @@ fg_status fg_grid_add_effects(fg_context *ctx, grid_problem *problem) {
     if (status != FG_OK) break;
     status = fg_grid_score_open(ctx, problem, &solution, &work);
     found = status == FG_OK && find_best_effect(&work, &best);
-    if (found) problem->effect[problem->effects++] = best;
+    if (found) problem->model.effect[problem->model.effects++] = best;
     fg_grid_score_close(&work);
     fg_grid_solution_free(&solution);
   }
-  problem->board_sd = kept;
+  problem->model.board_sd = kept;
   return status;
 }
 
@@ -163,7 +163,7 @@ static size_t first_column_of(const grid_problem *problem, const grid_solution *
                               size_t effect) {
   size_t at = solution->columns.effect;
   for (size_t e = 0; e < effect; e++)
-    at += fg_grid_effect_columns(&problem->effect[e]);
+    at += fg_grid_effect_columns(&problem->model.effect[e]);
   return at;
 }
 
@@ -172,7 +172,7 @@ double fg_grid_effect_chi2(const grid_problem *problem, const grid_solution *sol
   size_t at = first_column_of(problem, solution, effect);
   double a = gsl_vector_get(solution->estimate, at);
   double aa = gsl_matrix_get(solution->covariance, at, at);
-  if (problem->effect[effect].kind->columns == 1) return a * a / aa;
+  if (problem->model.effect[effect].kind->columns == 1) return a * a / aa;
   double b = gsl_vector_get(solution->estimate, at + 1);
   double bb = gsl_matrix_get(solution->covariance, at + 1, at + 1);
   double ab = gsl_matrix_get(solution->covariance, at, at + 1), det = aa * bb - ab * ab;
@@ -194,14 +194,14 @@ static void find_shape_reach(const grid_problem *problem, const grid_effect *eff
 }
 
 static fg_status refine_effect(fg_context *ctx, grid_problem *problem, size_t e) {
-  grid_effect *effect = &problem->effect[e];
+  grid_effect *effect = &problem->model.effect[e];
   grid_solution solution;
   grid_score_work work;
   double reach[FG_FIELD_SHAPES] = {0};
   grid_problem without = *problem;
-  without.effects--;
-  memmove(&without.effect[e], &without.effect[e + 1],
-          (without.effects - e) * sizeof *without.effect);
+  without.model.effects--;
+  memmove(&without.model.effect[e], &without.model.effect[e + 1],
+          (without.model.effects - e) * sizeof *without.model.effect);
   FG_TRY(fg_grid_solve(ctx, &without, GRID_ALL_ROWS, &solution));
   fg_status status = fg_grid_score_open(ctx, &without, &solution, &work);
   if (status == FG_OK) {
@@ -218,13 +218,13 @@ static fg_status refine_effect(fg_context *ctx, grid_problem *problem, size_t e)
 }
 
 fg_status fg_grid_refine_effects(fg_context *ctx, grid_problem *problem) {
-  double kept = problem->board_sd;
+  double kept = problem->model.board_sd;
   fg_status status = FG_OK;
-  problem->board_sd = 0;
-  for (size_t e = fg_grid_own_effects(problem); e < problem->effects && status == FG_OK; e++)
-    if (problem->effect[e].kind->start || problem->effect[e].kind->grid)
+  problem->model.board_sd = 0;
+  for (size_t e = fg_grid_own_effects(problem); e < problem->model.effects && status == FG_OK; e++)
+    if (problem->model.effect[e].kind->start || problem->model.effect[e].kind->grid)
       status = refine_effect(ctx, problem, e);
-  problem->board_sd = kept;
+  problem->model.board_sd = kept;
   return status;
 }
 
@@ -251,8 +251,8 @@ static bool move_effect(grid_effect *effect, const double *estimate) {
  */
 static void move_loose_shapes(grid_problem *problem, const grid_solution *solution, bool *fixed) {
   size_t at = solution->columns.effect;
-  for (size_t e = 0; e < problem->effects; e++) {
-    grid_effect *effect = &problem->effect[e];
+  for (size_t e = 0; e < problem->model.effects; e++) {
+    grid_effect *effect = &problem->model.effect[e];
     size_t all = fg_grid_effect_columns(effect);
     if (effect->kind->columns <= GRID_EFFECT_COLUMNS)
       fixed[e] |= !move_effect(effect, gsl_vector_const_ptr(solution->estimate, at));
@@ -267,8 +267,8 @@ fg_status fg_grid_loosen_shapes(fg_context *ctx, grid_problem *problem) {
     FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
     move_loose_shapes(problem, &solution, fixed);
     fg_grid_solution_free(&solution);
-    for (size_t e = fg_grid_own_effects(problem); e < problem->effects; e++)
-      problem->effect[e].loose = can_be_loose(problem->effect[e].kind) && !fixed[e];
+    for (size_t e = fg_grid_own_effects(problem); e < problem->model.effects; e++)
+      problem->model.effect[e].loose = can_be_loose(problem->model.effect[e].kind) && !fixed[e];
   }
   return FG_OK;
 }
@@ -280,16 +280,16 @@ fg_status fg_grid_prune_effects(fg_context *ctx, grid_problem *problem) {
     size_t weakest = 0;
     double min_chi2 = KEPT_CHI2;
     FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
-    for (size_t e = own; e < problem->effects; e++) {
+    for (size_t e = own; e < problem->model.effects; e++) {
       double chi2 = fg_grid_effect_chi2(problem, &solution, e);
       if (chi2 < min_chi2) min_chi2 = chi2, weakest = e;
     }
     fg_grid_solution_free(&solution);
     dropped = weakest > 0;
     if (!dropped) break;
-    problem->effects--;
-    memmove(&problem->effect[weakest], &problem->effect[weakest + 1],
-            (problem->effects - weakest) * sizeof *problem->effect);
+    problem->model.effects--;
+    memmove(&problem->model.effect[weakest], &problem->model.effect[weakest + 1],
+            (problem->model.effects - weakest) * sizeof *problem->model.effect);
   }
   return FG_OK;
 }

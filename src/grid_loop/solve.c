@@ -106,11 +106,13 @@ static void add_prior(const grid_problem *problem, const grid_columns *columns,
     add_diagonal(normal, k, scale && !problem->scale_known ? 1 : sd * M_SQRT1_2);
   }
   size_t at = columns->effect;
-  for (size_t e = 0; e < problem->effects; e++)
-    at = add_effect_prior(&problem->effect[e], at, normal);
-  if (problem->has_map) add_map_prior(&problem->map, columns->map, problem->map_size, normal);
-  if (problem->has_board_map)
-    add_map_prior(&problem->board_map, columns->board_map, problem->board_map_size, normal);
+  for (size_t e = 0; e < problem->model.effects; e++)
+    at = add_effect_prior(&problem->model.effect[e], at, normal);
+  if (problem->model.has_map)
+    add_map_prior(&problem->model.map, columns->map, problem->model.map_size, normal);
+  if (problem->model.has_board_map)
+    add_map_prior(&problem->model.board_map, columns->board_map, problem->model.board_map_size,
+                  normal);
 }
 
 /* ---- the rows ---- */
@@ -224,7 +226,8 @@ static void add_weighted(const grid_products *from, double weight, gsl_matrix *n
  * variances. */
 static double weigh_rows(const grid_problem *problem, const grid_sums *sums, gsl_matrix *normal,
                          gsl_vector *right, double *square) {
-  double s2 = problem->mark_sd * problem->mark_sd, b2 = problem->board_sd * problem->board_sd;
+  double s2 = problem->model.mark_sd * problem->model.mark_sd,
+         b2 = problem->model.board_sd * problem->model.board_sd;
   double logarithm = (double)sums->rows * log(s2);
   *square = 0;
   add_weighted(&sums->single, 1 / s2, normal, right, square);
@@ -271,9 +274,10 @@ static double map_rank(bool has, const fg_map_frame *frame) {
 
 static double size_terms(const grid_problem *problem) {
   double sum = 0;
-  if (problem->has_map) sum += map_rank(true, &problem->map) * 2 * log(problem->map_size);
-  if (problem->has_board_map)
-    sum += map_rank(true, &problem->board_map) * 2 * log(problem->board_map_size);
+  if (problem->model.has_map)
+    sum += map_rank(true, &problem->model.map) * 2 * log(problem->model.map_size);
+  if (problem->model.has_board_map)
+    sum += map_rank(true, &problem->model.board_map) * 2 * log(problem->model.board_map_size);
   return sum;
 }
 
@@ -413,26 +417,26 @@ static bool has_repeats(const grid_problem *problem) {
 static fg_status start_sizes(fg_context *ctx, grid_problem *problem, bool repeats) {
   grid_solution solution;
   double *sizes;
-  problem->mark_sd = 0.01;
-  problem->board_sd = 0;
-  problem->map_size = problem->board_map_size = 0.01;
+  problem->model.mark_sd = 0.01;
+  problem->model.board_sd = 0;
+  problem->model.map_size = problem->model.board_map_size = 0.01;
   FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
   fg_status status = fg_memory_allocate(ctx, problem->row_count, sizeof *sizes, (void **)&sizes);
   for (size_t i = 0; status == FG_OK && i < problem->row_count; i++)
     sizes[i] = fabs(solution.residual[i]);
   if (status == FG_OK)
-    problem->mark_sd = fmax(SIZE_MIN_MM, fg_robust_sd(sizes, problem->row_count));
+    problem->model.mark_sd = fmax(SIZE_MIN_MM, fg_robust_sd(sizes, problem->row_count));
   free(sizes);
   fg_grid_solution_free(&solution);
   /* Without a mark that is seen twice the board's part is the stated one. */
-  problem->board_sd = repeats ? problem->mark_sd : problem->design->u_place_mm;
+  problem->model.board_sd = repeats ? problem->model.mark_sd : problem->design->u_place_mm;
   return status;
 }
 
 static fg_status drop_outliers_of_grid(fg_context *ctx, grid_problem *problem) {
   grid_solution solution;
   FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
-  double limit = OUTLIER_SD * hypot(problem->mark_sd, problem->board_sd);
+  double limit = OUTLIER_SD * hypot(problem->model.mark_sd, problem->model.board_sd);
   for (size_t i = 0; i < problem->row_count; i++)
     problem->rows[i].used = fabs(solution.residual[i]) <= limit;
   fg_grid_solution_free(&solution);
@@ -444,11 +448,12 @@ static fg_status improve_all_sizes(fg_context *ctx, grid_problem *problem, bool 
   grid_sums sums;
   fg_status status = FG_OK;
   FG_TRY_EXIT(add_rows(ctx, problem, &columns, GRID_ALL_ROWS, &sums));
-  FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->mark_sd));
-  if (repeats) FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->board_sd));
-  if (problem->has_map) FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->map_size));
-  if (problem->has_board_map)
-    FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->board_map_size));
+  FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->model.mark_sd));
+  if (repeats) FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->model.board_sd));
+  if (problem->model.has_map)
+    FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->model.map_size));
+  if (problem->model.has_board_map)
+    FG_TRY_EXIT(improve_size(ctx, problem, &sums, &problem->model.board_map_size));
 exit:
   free_grid_sums(&sums);
   return status;
@@ -456,7 +461,7 @@ exit:
 
 fg_status fg_grid_find_sizes(fg_context *ctx, grid_problem *problem) {
   bool repeats = has_repeats(problem);
-  if (!(problem->mark_sd > 0)) FG_TRY(start_sizes(ctx, problem, repeats));
+  if (!(problem->model.mark_sd > 0)) FG_TRY(start_sizes(ctx, problem, repeats));
   fg_status status = FG_OK;
   for (int round = 0; round < TURNS_OF_SIZES && status == FG_OK; round++) {
     status = improve_all_sizes(ctx, problem, repeats);

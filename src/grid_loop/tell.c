@@ -19,19 +19,19 @@ enum { MAP_SIDE_MAX = 15 };
 size_t fg_grid_displacement_columns(const grid_problem *problem, const grid_columns *columns,
                                     fg_point at, size_t *index, fg_point *value) {
   size_t n = 0, column = columns->effect;
-  for (size_t e = 0; e < problem->effects; e++) {
-    const grid_effect *effect = &problem->effect[e];
+  for (size_t e = 0; e < problem->model.effects; e++) {
+    const grid_effect *effect = &problem->model.effect[e];
     fg_point d[FG_FIELD_COLUMNS];
-    size_t own = fg_grid_effect_moves(effect, &problem->frame, at, d);
+    size_t own = fg_grid_effect_moves(effect, &problem->model.frame, at, d);
     for (size_t k = 0; k < own; k++, n++) {
       index[n] = column++;
       value[n] = d[k];
     }
   }
-  if (!problem->has_map) return n;
+  if (!problem->model.has_map) return n;
   fg_map_weight weights[FG_MAP_WEIGHTS];
-  fg_map_weigh(&problem->map, at, weights);
-  size_t splines = fg_map_splines(&problem->map);
+  fg_map_weigh(&problem->model.map, at, weights);
+  size_t splines = fg_map_splines(&problem->model.map);
   for (size_t k = 0; k < FG_MAP_WEIGHTS; k++) {
     index[n] = columns->map + weights[k].spline;
     value[n++] = (fg_point){weights[k].value, 0};
@@ -50,7 +50,7 @@ static double covariance_at(const fg_grid_loop *loop, size_t a, size_t b) {
 static size_t effect_column(const fg_grid_loop *loop, size_t effect) {
   size_t at = loop->solution.columns.effect;
   for (size_t e = 0; e < effect; e++)
-    at += fg_grid_effect_columns(&loop->problem.effect[e]);
+    at += fg_grid_effect_columns(&loop->problem.model.effect[e]);
   return at;
 }
 
@@ -67,7 +67,7 @@ static void judge_claim(fg_grid_claim *claim) {
 }
 
 static void tell_effect(fg_grid_loop *loop, size_t e) {
-  const grid_effect *effect = &loop->problem.effect[e];
+  const grid_effect *effect = &loop->problem.model.effect[e];
   fg_grid_claim *claim = add_claim(&loop->result, effect->kind->id, effect->kind->words);
   size_t at = effect_column(loop, e);
   double a = gsl_vector_get(loop->solution.estimate, at), va = covariance_at(loop, at, at);
@@ -120,7 +120,7 @@ static void tie_with_board(fg_grid_loop *loop, fg_grid_claim *scanner, fg_grid_c
 static void tell_claims(fg_grid_loop *loop) {
   fg_grid_loop_result *result = &loop->result;
   const grid_columns *columns = &loop->solution.columns;
-  for (size_t e = 0; e < loop->problem.effects; e++)
+  for (size_t e = 0; e < loop->problem.model.effects; e++)
     tell_effect(loop, e);
   size_t board = result->claims;
   tell_board(loop);
@@ -275,22 +275,23 @@ fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
   fg_grid_loop_result *result = &loop->result;
   result->scans = loop->scan_count;
   result->boards = problem->board_count;
-  result->turned = problem->turned;
+  result->turned = problem->model.turned;
   result->scale_known = problem->scale_known;
-  result->axes_known = problem->scale_known || problem->turned;
-  result->mark_um = 1000 * problem->mark_sd;
-  result->board_mark_um = problem->board_sd > 0 ? 1000 * problem->board_sd : NAN;
+  result->axes_known = problem->scale_known || problem->model.turned;
+  result->mark_um = 1000 * problem->model.mark_sd;
+  result->board_mark_um = problem->model.board_sd > 0 ? 1000 * problem->model.board_sd : NAN;
   result->carriage_um = fg_grid_find_carriage(problem, &loop->solution);
   for (int axis = 0; axis < 2; axis++) {
-    result->low_mm[axis] = problem->frame.low_mm[axis];
-    result->high_mm[axis] = problem->frame.high_mm[axis];
+    result->low_mm[axis] = problem->model.frame.low_mm[axis];
+    result->high_mm[axis] = problem->model.frame.high_mm[axis];
   }
   FG_TRY(tell_scans(ctx, loop));
   tell_claims(loop);
-  if (problem->has_map)
-    result->map_um = rms_of_map(loop, &problem->map, loop->solution.columns.map);
-  if (problem->has_board_map)
-    result->board_map_um = rms_of_map(loop, &problem->board_map, loop->solution.columns.board_map);
+  if (problem->model.has_map)
+    result->map_um = rms_of_map(loop, &problem->model.map, loop->solution.columns.map);
+  if (problem->model.has_board_map)
+    result->board_map_um =
+        rms_of_map(loop, &problem->model.board_map, loop->solution.columns.board_map);
   return tell_map(ctx, loop);
 }
 

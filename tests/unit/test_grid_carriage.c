@@ -16,7 +16,7 @@ enum { SIDE = 60, SCANS = 3, ROWS = 2 * SCANS * SIDE * SIDE };
 /* A board of SIDE × SIDE marks in every scan, along x and along y; `carriage_mm` differs from strip
  * to strip and scan to scan, `common_mm` from strip to strip alone. */
 static double find_carriage_of(const int turns[SCANS], double carriage_mm, double common_mm) {
-  grid_problem problem = {.scan_count = SCANS, .board_count = 1, .mark_sd = MARK_MM};
+  grid_problem problem = {.scan_count = SCANS, .board_count = 1, .model = {.mark_sd = MARK_MM}};
   grid_solution solution = {.residual = malloc(ROWS * sizeof(double))};
   uint64_t random = 7;
   double common[SIDE];
