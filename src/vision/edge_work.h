@@ -3,6 +3,8 @@
 #ifndef FG_VISION_EDGE_WORK_H
 #define FG_VISION_EDGE_WORK_H
 
+#include <math.h>
+
 #include "foilgauge/picture.h"
 #include "foilgauge/strip.h"
 #include "vision/driver_model.h"
@@ -88,6 +90,11 @@ typedef struct fg_edge_work {
   bool again; /* second pass, stations are known: foreign pixels beside the strip are left out of
                  the shape */
 } fg_edge_work;
+
+/* Returns the reach of the model beside the edges: INFINITY where no wall shows. */
+static inline float fg_edges_outer(const fg_edge_work *work) {
+  return work->outer_px > 0 ? (float)work->outer_px : INFINITY;
+}
 
 /* Stations [*first, *last] of a chunk. edges_pixels.c */
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last);

@@ -69,7 +69,7 @@ static void find_station_reach(const fg_edge_work *work, size_t first, size_t la
                                station_reach *reach) {
   double radius = work->driver->values[FG_DRIVER_RADIUS];
   if (work->driver->values[FG_DRIVER_AMOUNT] == 0) radius = 0;
-  float outer = work->outer_px > 0 ? (float)work->outer_px : INFINITY;
+  float outer = fg_edges_outer(work);
   for (size_t i = first; i <= last; i++)
     for (int side = 0; side < 2; side++)
       reach[i - first].px[side] = fminf(

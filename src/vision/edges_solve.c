@@ -17,7 +17,7 @@ typedef struct held {
 } held;
 
 static held held_of_station(const fg_edge_work *work, const fg_edge_station *s) {
-  float outer = work->outer_px > 0 ? (float)work->outer_px : INFINITY;
+  float outer = fg_edges_outer(work);
   return (held){.edge_px = {s->edge_px[0], s->edge_px[1]},
                 .blur_inverse = {1.0f / s->blur_px[0], 1.0f / s->blur_px[1]},
                 .plateau = s->plateau,
