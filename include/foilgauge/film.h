@@ -79,6 +79,7 @@ typedef struct fg_film_options {
    * sleeve_radius_mm is added to the clearance. NULL: round, as designed. */
   const char *bore;
   double lift_off_rpm, u_lift_off_rpm; /* measured, as a rotor coasts down; NaN: not */
+  double u_load_n;                     /* of the load at that speed */
   size_t draws;                        /* bearings with random shims, or of a lot; 0: none */
   /* File of drawn bearings that are solved, which a run goes on from and adds to; NULL: none. */
   const char *keep;
@@ -225,8 +226,9 @@ typedef struct fg_film_uncertainty {
 typedef struct fg_film_lift_off {
   bool asked;
   double rpm, u_rpm;                     /* as measured */
-  double predicted_rpm, u_predicted_rpm; /* u by the clearances' u; NaN: not known */
-  double shift_um, u_shift_um;           /* u by the speed's u alone */
+  double predicted_rpm, u_predicted_rpm; /* u by those of clearances and load; NaN: not known */
+  double shift_um, u_shift_um;           /* u by those of speed and load */
+  double u_by_load_um;                   /* the load's part of it */
   double clearance_um;                   /* mean over the bumps, shifted */
   double u_bearing_um;                   /* of the bearing's mean clearance, before */
   bool agrees;                           /* no shift is shown: within 2 u of all */

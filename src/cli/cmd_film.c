@@ -60,6 +60,7 @@ enum {
   OPTION_SHARD,
   OPTION_LIFT_OFF,
   OPTION_U_LIFT_OFF,
+  OPTION_U_LOAD,
 };
 
 static const struct argp_option options[] = {
@@ -125,6 +126,8 @@ static const struct argp_option options[] = {
      "much the clearances differ from the bearing's, for the model to do so",
      3},
     {"u-lift-off", OPTION_U_LIFT_OFF, "RPM", 0, "Its standard uncertainty (default: 0)", 3},
+    {"u-load", OPTION_U_LOAD, "N", 0,
+     "Standard uncertainty of the load, for the clearances by the lift-off speed (default: 0)", 3},
     {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
      "Draw bearings as designed with random shims under their bumps, percent of the clearance: a "
      "higher shim closes it",
@@ -241,6 +244,7 @@ static const number_option numbers[] = {
     NUMBER(OPTION_WITHIN, "within", within_pct, 0.1, 100),
     NUMBER(OPTION_LIFT_OFF, "lift-off", lift_off_rpm, 1e-3, 1e8),
     NUMBER(OPTION_U_LIFT_OFF, "u-lift-off", u_lift_off_rpm, 0, 1e8),
+    NUMBER(OPTION_U_LOAD, "u-load", u_load_n, 0, 1e7),
     NUMBER(OPTION_TOUCHING, "touching", touching_um, 0, 1e5),
 };
 
@@ -319,6 +323,7 @@ static void check_film_end(film_run *run, struct argp_state *state) {
   if (o->keep && !o->draws) argp_error(state, "--keep is of drawn bearings: --shims, or a lot");
   if (o->u_lift_off_rpm > 0 && isnan(o->lift_off_rpm))
     argp_error(state, "--u-lift-off is of --lift-off RPM");
+  if (o->u_load_n > 0 && isnan(o->lift_off_rpm)) argp_error(state, "--u-load is of --lift-off RPM");
   if (run->outputs.path[OUT_ORBIT] && !o->orbit_turns)
     argp_error(state, "--orbit-out needs --orbit TURNS");
   if (isfinite(o->compliance) && o->model)

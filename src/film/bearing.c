@@ -36,6 +36,7 @@ fg_film_options fg_film_options_default(void) {
                            .within_pct = NAN,
                            .lift_off_rpm = NAN,
                            .u_lift_off_rpm = 0,
+                           .u_load_n = 0,
                            .speed_low_rpm = NAN,
                            .speed_high_rpm = NAN,
                            .speeds = 25,

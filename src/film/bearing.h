@@ -36,7 +36,7 @@ typedef struct fg_film_workspace {
   fg_film film;
   fg_film_case at, before;
   fg_film_state state;
-  fg_film_case spare_before; /* of fg_film_seek_onward */
+  fg_film_case spare_before; /* of fg_film_keep_film */
   fg_film_state spare;
 } fg_film_workspace;
 fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
@@ -57,10 +57,22 @@ fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *report,
                             fg_film_workspace *workspace, const fg_film_bearing *bearing,
                             double speed_rpm, fg_film_result *result);
 
-/* The same, on from the workspace's case and state first, which stay where no film is found. */
-fg_status fg_film_seek_onward(fg_context *ctx, const fg_film_report *report,
-                              fg_film_workspace *workspace, const fg_film_bearing *bearing,
-                              double speed_rpm, fg_film_result *result);
+/* The workspace's case and state, to return to. */
+typedef struct fg_film_mark {
+  fg_film_state state;
+  fg_film_case before;
+} fg_film_mark;
+fg_status fg_film_mark_open(fg_context *ctx, const fg_film_workspace *workspace,
+                            fg_film_mark *mark);
+void fg_film_mark_return(const fg_film_mark *mark, fg_film_workspace *workspace);
+void fg_film_mark_close(fg_film_mark *mark);
+
+/* On from the workspace's case and state along one film: where it touches, ends, or gives way to
+ * another one behind a gap between pads, the outcome is none or touching, and case and state stay.
+ * The next step must be a short one. */
+fg_status fg_film_keep_film(fg_context *ctx, const fg_film_report *report,
+                            fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                            double speed_rpm, fg_film_result *result);
 
 /* Draws the random bearings; the state of the perfect one is the workspace's. */
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,

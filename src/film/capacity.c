@@ -5,8 +5,9 @@
 
 #include "film/bearing.h"
 
-static const double stride = 1.4, farthest = 1e4;
-enum { HALVINGS = 12 };
+/* A rotor that coasts stays on its film: steps are short, so that one film is followed. */
+static const double stride = 1.06, farthest = 1e4;
+enum { HALVINGS = 10 };
 
 /* The bearing with its load, or its speed, times a factor. */
 static fg_status carries(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
@@ -14,8 +15,8 @@ static fg_status carries(fg_context *ctx, const fg_film_report *r, fg_film_works
   fg_film_report changed = *r;
   fg_film_result result;
   changed.options.load_n *= load_factor;
-  FG_TRY(fg_film_seek_onward(ctx, &changed, workspace, &r->bearing,
-                             r->options.speed_rpm * speed_factor, &result));
+  FG_TRY(fg_film_keep_film(ctx, &changed, workspace, &r->bearing,
+                           r->options.speed_rpm * speed_factor, &result));
   *does = result.outcome == FG_FILM_SOLVED;
   return FG_OK;
 }
@@ -41,12 +42,23 @@ static fg_status find_film_limit(fg_context *ctx, const fg_film_report *r,
   return FG_OK;
 }
 
-fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
+/* Finds both limits, each on from the solved bearing. */
+static fg_status find_limits(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace,
+                             const fg_film_mark *solved) {
   double factor;
-  if (r->at.outcome != FG_FILM_SOLVED) return FG_OK;
   FG_TRY(find_film_limit(ctx, r, workspace, true, &factor));
   r->load_capacity_n = r->options.load_n * factor;
+  fg_film_mark_return(solved, workspace);
   FG_TRY(find_film_limit(ctx, r, workspace, false, &factor));
   r->lift_off_rpm = r->options.speed_rpm / factor;
   return FG_OK;
+}
+
+fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
+  fg_film_mark solved;
+  if (r->at.outcome != FG_FILM_SOLVED) return FG_OK;
+  FG_TRY(fg_film_mark_open(ctx, workspace, &solved));
+  fg_status status = find_limits(ctx, r, workspace, &solved);
+  fg_film_mark_close(&solved);
+  return status;
 }

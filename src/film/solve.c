@@ -132,16 +132,47 @@ fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *r, fg_film_wo
   return FG_OK;
 }
 
-fg_status fg_film_seek_onward(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
-                              const fg_film_bearing *bearing, double speed_rpm,
-                              fg_film_result *result) {
+fg_status fg_film_mark_open(fg_context *ctx, const fg_film_workspace *b, fg_film_mark *mark) {
+  *mark = (fg_film_mark){0};
+  FG_TRY(fg_film_state_open(ctx, &b->film, &mark->state));
+  fg_status status = fg_film_case_open(ctx, b->film.columns, &mark->before);
+  if (status != FG_OK) {
+    fg_film_state_close(&mark->state);
+    return status;
+  }
+  fg_film_state_copy(&b->film, &b->state, &mark->state);
+  fg_film_case_copy(&b->before, b->film.columns, &mark->before);
+  return FG_OK;
+}
+
+void fg_film_mark_return(const fg_film_mark *mark, fg_film_workspace *b) {
+  fg_film_state_copy(&b->film, &mark->state, &b->state);
+  fg_film_case_copy(&mark->before, b->film.columns, &b->before);
+}
+
+void fg_film_mark_close(fg_film_mark *mark) {
+  fg_film_state_close(&mark->state);
+  fg_film_case_close(&mark->before);
+}
+
+/* Max move of the rotor across its direction, over C, that a short step of one film makes. */
+static const double across_max = 0.15;
+
+static bool has_jumped(const fg_film_workspace *b) {
+  const double *from = b->spare.place, *to = b->state.place;
+  double across = fabs(from[0] * to[1] - from[1] * to[0]);
+  return across > across_max * fmax(hypot(from[0], from[1]), across_max);
+}
+
+fg_status fg_film_keep_film(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+                            const fg_film_bearing *bearing, double speed_rpm,
+                            fg_film_result *result) {
   size_t columns = b->film.columns;
   fg_film_state_copy(&b->film, &b->state, &b->spare);
   fg_film_case_copy(&b->before, columns, &b->spare_before);
   FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result));
-  if (result->outcome != FG_FILM_UNSOLVED) return FG_OK;
-  FG_TRY(fg_film_seek_film(ctx, r, b, bearing, speed_rpm, result));
-  if (result->outcome != FG_FILM_UNSOLVED) return FG_OK;
+  if (result->outcome == FG_FILM_SOLVED && has_jumped(b)) result->outcome = FG_FILM_UNSOLVED;
+  if (result->outcome == FG_FILM_SOLVED) return FG_OK;
   fg_film_state_copy(&b->film, &b->spare, &b->state);
   fg_film_case_copy(&b->spare_before, columns, &b->before);
   return FG_OK;

@@ -41,8 +41,7 @@ foil has no bumps: the change of its beams' sagitta shifts the clearance of tabl
 mesh 2,4; bearings are drawn from the six foils with seed 1. Foils with a bump that was not measured are left out. "Micrometer": the strip's thickness was measured apart (0.1 mm, u 0.5 um).
 
 The clearance of bumps is measured far better than its u says without a micrometer: this u is that of the strip's thickness, which a scan alone does not know (the driver's
-tone). With a micrometer it hardly adds to the film. Of cantilevers the stated u is too small at this resolution: **fewer than 95 % of the beams lie within 2u**, and
-with them the films. The critical mass of a few grams hangs on what is not round, and is uncertain by tens of percent where the rest is known to one.
+tone). With a micrometer it hardly adds to the film. A cantilever's clearance follows from the lengths of its beams, which need no micrometer. The critical mass of a few grams hangs on what is not round, and is uncertain by tens of percent where the rest is known to one.
 """
 
 

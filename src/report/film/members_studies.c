@@ -53,16 +53,18 @@ const fg_members fg_film_tolerance_members = FG_MEMBERS(tolerance_rows);
 static const fg_member lift_off_rows[] = {
     {FG_NUMBER_U("measured_rpm", fg_film_lift_off, rpm, u_rpm), .words = "as stated"},
     {FG_NUMBER_U("predicted_rpm", fg_film_lift_off, predicted_rpm, u_predicted_rpm),
-     .words = "of the bearing; u by that of its clearances; null: not known"},
+     .words = "of the bearing; u by those of its clearances and of the load; null: not known"},
     {FG_NUMBER_U("clearance_shift_um", fg_film_lift_off, shift_um, u_shift_um),
      .words = "of all bumps alike, with which the bearing lifts off at the measured speed; u by "
-              "that of the speed; null: none within 0.6 of the clearance"},
+              "those of the speed and the load; null: none within 0.6 of the clearance"},
+    {FG_NUMBER("u_by_load_um", fg_film_lift_off, u_by_load_um),
+     .words = "the load's part of that u"},
     {FG_NUMBER("clearance_um", fg_film_lift_off, clearance_um),
      .words = "mean over the bumps, so shifted"},
     {FG_NUMBER("u_bearing_um", fg_film_lift_off, u_bearing_um),
      .words = "of that mean as it was measured on the foils; 0: as designed, or without u"},
     {FG_FLAG("agrees", fg_film_lift_off, agrees),
-     .words = "the shift is within twice the u of speed and clearances together"},
+     .words = "the shift is within twice the u of speed, load and clearances together"},
 };
 const fg_members fg_film_lift_off_members = FG_MEMBERS(lift_off_rows);
 
