@@ -21,7 +21,7 @@ enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 3, ROUNDS =
 enum { SHORTENED = 16, SCATTERED = 24, REFITTED = 12 };
 enum { COPIES_MAX = 3 };
 /* Sets whose parts are exchanged; their rests without one part, at most; how often. */
-enum { EXCHANGED = 4, EXCHANGES = 8, EXCHANGE_ROUNDS = 2 };
+enum { EXCHANGED = 4, EXCHANGES = 12, EXCHANGE_ROUNDS = 2 };
 
 /* Scatter of bumps that is tried: of their height, of their radius as thousandths of it, along the
  * foil. */
@@ -313,25 +313,33 @@ static bool same_shapes(const fg_evidence_model *a, const fg_evidence_model *b) 
   return true;
 }
 
+/* Lists the likeliest sets of named effects without one of their parts, each once. */
+static void list_rests(const fg_evidence_search *s, fg_evidence_model *rest, size_t *rests) {
+  size_t sets = 0;
+  for (size_t m = 1; m < s->count && sets < EXCHANGED; m++) {
+    if (!fg_evidence_is_named(&s->models[m]) || s->models[m].parts < 2) continue;
+    sets++;
+    for (size_t k = 0; k < s->models[m].parts && *rests < EXCHANGES; k++) {
+      bool known = false;
+      leave_out(&s->models[m], k, &rest[*rests]);
+      for (size_t r = 0; r < *rests && !known; r++)
+        known = same_shapes(&rest[r], &rest[*rests]);
+      *rests += !known;
+    }
+  }
+}
+
 /* Exchanges every part of the likeliest sets of named effects for another one, and fits it anew
  * beside the rest: what leads alone need not be of the best pair, nor is its shape the same. */
 static fg_status exchange_parts(fg_context *ctx, fg_evidence_search *s) {
-  fg_evidence_model base[EXCHANGES];
-  size_t bases = 0, sets = 0;
-  for (size_t m = 1; m < s->count && sets < EXCHANGED && bases < EXCHANGES; m++) {
-    if (!fg_evidence_is_named(&s->models[m]) || s->models[m].parts < 2) continue;
-    sets++;
-    for (size_t k = 0; k < s->models[m].parts && bases < EXCHANGES; k++) {
-      bool known = false;
-      leave_out(&s->models[m], k, &base[bases]);
-      for (size_t b = 0; b < bases && !known; b++)
-        known = same_shapes(&base[b], &base[bases]);
-      bases += !known;
-    }
+  fg_evidence_model rest[EXCHANGES];
+  size_t rests = 0, done = 0;
+  for (int round = 0; round < EXCHANGE_ROUNDS; round++) {
+    list_rests(s, rest, &rests);
+    for (; done < rests; done++)
+      FG_TRY(extend_model(ctx, s, &rest[done], true));
+    fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   }
-  for (size_t b = 0; b < bases; b++)
-    FG_TRY(extend_model(ctx, s, &base[b], true));
-  fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
   return FG_OK;
 }
 
@@ -388,8 +396,7 @@ fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   for (size_t k = 0; k < s->request.seeds; k++)
     FG_TRY(propose_set(ctx, &s->request.seed[k], k == 0, s));
   fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
-  for (int round = 0; round < EXCHANGE_ROUNDS; round++)
-    FG_TRY(exchange_parts(ctx, s));
+  FG_TRY(exchange_parts(ctx, s));
   FG_TRY(shorten_models(ctx, s));
   FG_TRY(refit_models(ctx, s));
   fg_sort_items(s->models, s->count, sizeof *s->models, compare_models);
