@@ -112,17 +112,25 @@ static void fit_apex(fg_beam_line *line, apex *a, double *off) {
   line->along = (fg_point){-a->axis.y, a->axis.x};
 }
 
+/* Mean cosine of the stations' directions from the circle's centre, which are evenly spaced. */
+static double mean_cosine(const fg_beam_line *line) {
+  size_t n = line->edge->count;
+  fg_point a = station_at(line, 0)->at, b = station_at(line, n - 1)->at;
+  double half = asin(fmin(1, 0.5 * hypot(b.x - a.x, b.y - a.y) / line->edge->radius_mm));
+  double step = 2 * half / (double)(n - 1);
+  return step > 0 ? sin(0.5 * (double)n * step) / ((double)n * sin(0.5 * step)) : 1;
+}
+
 /* Starts with the circle's known radius, whose centre lies towards the tip: the stations of a flat
- * end do not tell on which side it is. */
+ * end do not tell on which side it is. The centre must be near: the fit is linear in its move. */
 static void start_apex(const fg_beam_line *line, fg_point axis, apex *a) {
-  double n = 0, x = 0, y = 0, radius = line->edge->radius_mm;
+  double n = (double)line->edge->count, x = 0, y = 0, radius = line->edge->radius_mm;
+  double off = radius * mean_cosine(line);
   for (size_t i = 0; i < line->edge->count; i++) {
-    if (!station_at(line, i)->used) continue;
-    x += station_at(line, i)->at.x;
-    y += station_at(line, i)->at.y;
-    n++;
+    x += station_at(line, i)->at.x / n;
+    y += station_at(line, i)->at.y / n;
   }
-  a->circle = (fg_circle){x / n + radius * axis.x, y / n + radius * axis.y, radius};
+  a->circle = (fg_circle){x + off * axis.x, y + off * axis.y, radius};
   a->axis = (fg_point){-axis.x, -axis.y};
 }
 

@@ -6,6 +6,7 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include "geometry/beam_line.h"
 #include "support/test.h"
 #include "vision/round_end.h"
 
@@ -59,10 +60,33 @@ static void narrow_cuts_do_not_reach_the_light_of_the_void(void **unused) {
   assert_true(fg_round_end_distance(&narrow, 0, 0) < max);
 }
 
+/* Stations on an arc about (2, 1), the tip towards +y. */
+static void the_apex_of_an_arc_is_found(void **unused) {
+  (void)unused;
+  enum { STATIONS = 12 };
+  const double radius = 0.1, half = 1.1;
+  for (int turned = 0; turned < 2; turned++) {
+    fg_disc_point stations[STATIONS];
+    fg_context ctx = {0};
+    fg_beam_line line;
+    for (int i = 0; i < STATIONS; i++) {
+      double f = half * (2 * (i + 0.5) / STATIONS - 1) * (turned ? -1 : 1);
+      stations[i] = (fg_disc_point){.at = {2 + radius * sin(f), 1 - radius * cos(f)}, .used = true};
+    }
+    const fg_beam_edge edge = {
+        .stations = stations, .count = STATIONS, .round = true, .radius_mm = 1.002 * radius};
+    assert_int_equal(fg_beam_line_fit(&ctx, &edge, (fg_point){0, 1}, &line), FG_OK);
+    assert_near(line.at.y, 1 - radius, 1e-8);
+    assert_near(line.at.x, 2, 1e-8);
+    fg_beam_line_free(&line);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(light_is_that_of_the_blurred_cut),
       cmocka_unit_test(wide_ends_are_straight_or_moved_by_their_curvature),
+      cmocka_unit_test(the_apex_of_an_arc_is_found),
       cmocka_unit_test(narrow_cuts_do_not_reach_the_light_of_the_void),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
