@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV for spreadsheets whose decimal mark is a comma. Finished CSV is converted, so that its
  * writers do not depend on it. */
+#include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,29 +39,55 @@ static void write_decimal_cell(FILE *out, const char *cell, size_t length) {
   fwrite(point + 1, 1, length - (size_t)(point - cell) - 1, out);
 }
 
-static void convert_csv(const char *text, size_t size, FILE *out) {
-  const char *end = text + size;
-  fputs("\xef\xbb\xbf", out);
-  while (text < end) {
-    size_t length = cell_length(text, end);
-    write_decimal_cell(out, text, length);
-    text += length;
-    if (text < end) fputc(*text == ',' ? ';' : *text, out);
-    text++;
+/* Stream that converts cells as they become whole, so that a long table needs no memory. */
+typedef struct csv_converter {
+  FILE *out;
+  char *text; /* begin of a cell; owned */
+  size_t length, capacity;
+  bool failed; /* out of memory */
+} csv_converter;
+
+/* A cell is whole when a byte follows it; `last`: at the end of the table. */
+static void convert_cells(csv_converter *c, bool last) {
+  const char *at = c->text, *end = c->text + c->length;
+  while (at < end) {
+    size_t length = cell_length(at, end);
+    if (at + length == end && !last) break;
+    write_decimal_cell(c->out, at, length);
+    at += length;
+    if (at < end) fputc(*at == ',' ? ';' : *at, c->out);
+    at += at < end;
   }
+  c->length = (size_t)(end - at);
+  if (c->length) memmove(c->text, at, c->length);
+}
+
+static ssize_t receive_csv(void *cookie, const char *bytes, size_t count) {
+  csv_converter *c = cookie;
+  fg_context unused;
+  if (c->failed ||
+      fg_memory_reserve(&unused, c->length + count, 1, &c->capacity, (void **)&c->text) != FG_OK) {
+    c->failed = true;
+    return 0;
+  }
+  memcpy(c->text + c->length, bytes, count);
+  c->length += count;
+  convert_cells(c, false);
+  return (ssize_t)count;
 }
 
 fg_status fg_csv_write(fg_context *ctx, bool decimal_comma, fg_csv_writer *write, void *user,
                        FILE *out) {
-  char *text = NULL;
-  size_t size = 0;
+  csv_converter converter = {.out = out};
   if (!decimal_comma) return write(ctx, user, out);
-  FILE *memory = fg_stream_open(&text, &size);
-  if (!memory) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
-  fg_status status = write(ctx, user, memory);
-  if (!fg_stream_keep(memory, &text) && status == FG_OK)
-    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
-  if (status == FG_OK) convert_csv(text, size, out);
-  free(text);
+  FILE *cells = fopencookie(&converter, "w", (cookie_io_functions_t){.write = receive_csv});
+  if (!cells) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  __fsetlocking(cells, FSETLOCKING_BYCALLER); /* one thread writes to it */
+  fputs("\xef\xbb\xbf", out);
+  fg_status status = write(ctx, user, cells);
+  fclose(cells);
+  if (converter.failed) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  if (status == FG_OK) convert_cells(&converter, true);
+  free(converter.text);
   return status == FG_OK ? fg_stream_finish(ctx, out, "the table") : status;
 }
