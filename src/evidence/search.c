@@ -14,7 +14,14 @@
 
 /* Models that are extended in a round: of named effects alone, and with rivals if they are no
  * further than REACH from the best. */
-enum { NAMED_FRONT = 4, RIVAL_FRONT = 3, NAMED_MAX = 4, RIVALS_MAX = 3, ROUNDS = 4 };
+enum {
+  NAMED_FRONT = 4,
+  RIVAL_FRONT = 3,
+  NAMED_MAX = 4,
+  RIVALS_MAX = 3,
+  DISC_RIVALS_MAX = 2,
+  ROUNDS = 4
+};
 #define REACH 60.0
 /* The likeliest models, of which every part is left out in turn; models that get their own scatter,
  * and whose effects are fitted together. */
@@ -104,10 +111,17 @@ static bool bears_name(const fg_evidence_option *option) {
   return option->effect && !fg_effect_is_unnamed(option->effect);
 }
 
+/* On few discs the own form of each is a rival: three of them, or two beside a field, would explain
+ * what lost rows leave. */
+static size_t rivals_max(const fg_evidence_search *s) {
+  return s->problem.edge_fit->discs ? DISC_RIVALS_MAX : RIVALS_MAX;
+}
+
 /* Ripples and steps may come several times, all others once, in one of their bases. */
-static bool may_join(const fg_evidence_model *model, const fg_evidence_option *option) {
+static bool may_join(const fg_evidence_search *s, const fg_evidence_model *model,
+                     const fg_evidence_option *option) {
   if (model->parts == FG_EVIDENCE_PARTS) return false;
-  if (!bears_name(option) && model->parts - model->named == RIVALS_MAX) return false;
+  if (!bears_name(option) && model->parts - model->named == rivals_max(s)) return false;
   if (option->rival) return !holds_rival(model, option);
   if (bears_name(option) && model->named == NAMED_MAX) return false;
   if (option->effect->sought == FG_EFFECT_PLACED)
@@ -149,7 +163,7 @@ static fg_status list_extensions(fg_context *ctx, fg_evidence_search *s,
   for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
     const fg_evidence_option *option = &s->options[o];
     fg_evidence_extension *one = &list[*count];
-    if (!may_join(from, option) || (named && !bears_name(option))) continue;
+    if (!may_join(s, from, option) || (named && !bears_name(option))) continue;
     *one = (fg_evidence_extension){.option = option, .part = &s->store[s->stored]};
     FG_TRY(option->rival
                ? fg_evidence_fit_rival(ctx, s, factor, option, one->part, &one->evidence)
