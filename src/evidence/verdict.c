@@ -207,6 +207,23 @@ static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, bool fa
   return FG_OK;
 }
 
+/* Of models that the edges do not tell apart one of named effects alone comes first, and is fitted,
+ * unless it needs more causes than the likeliest. */
+static void put_named_first(fg_evidence_verdict *v) {
+  size_t first = 0;
+  while (first < v->ties &&
+         (!fg_evidence_is_named(&v->tie[first]) || v->tie[first].parts > v->tie[0].parts))
+    first++;
+  if (first == v->ties) return;
+  const fg_evidence_model model = v->tie[first];
+  double middle_mm[FG_EVIDENCE_PARTS];
+  memcpy(middle_mm, v->middle_mm[first], sizeof middle_mm);
+  memmove(v->tie + 1, v->tie, first * sizeof *v->tie);
+  memmove(v->middle_mm + 1, v->middle_mm, first * sizeof *v->middle_mm);
+  v->tie[0] = model;
+  memcpy(v->middle_mm[0], middle_mm, sizeof middle_mm);
+}
+
 static void add_tie(const fg_evidence_model *model, fg_evidence_verdict *v) {
   for (size_t k = 0; k < FG_EVIDENCE_PARTS; k++)
     v->middle_mm[v->ties][k] = NAN;
@@ -302,6 +319,7 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
   const tie_range range = choose_range(s, named, margin);
   FG_TRY(list_ties(ctx, s, &range, v));
   if (!v->ties) take_likeliest_rivals(s, v);
+  if (isfinite(named)) put_named_first(v);
   const fg_evidence_model *unnamed = find_unnamed(s);
   if (isfinite(named) && v->ties == 1 && count_pieces(&v->tie[0]) >= PIECES && unnamed)
     add_tie(unnamed, v);

@@ -19,7 +19,7 @@ typedef enum fg_evidence_outcome {
 
 typedef struct fg_evidence_verdict {
   fg_evidence_outcome outcome;
-  fg_evidence_model tie[FG_EVIDENCE_TIES]; /* likeliest first; of FOUND one, of CLEAN none */
+  fg_evidence_model tie[FG_EVIDENCE_TIES]; /* the likeliest first, or one of as few named effects */
   double middle_mm[FG_EVIDENCE_TIES][FG_EVIDENCE_PARTS]; /* of polynomials: their middle */
   size_t ties;
   /* Of UNATTRIBUTED: named effects of tie[0] that no explanation can do without. */

@@ -83,7 +83,7 @@ static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model
                             const double *middle_mm, double top, const bool *certain,
                             fg_explanations *to) {
   if (to->count == FG_EXPLANATIONS_MAX) return;
-  fg_explanation one = {.dof = 1, .excess = 1 + 2 * (top - model->score)};
+  fg_explanation one = {.dof = 1, .excess = 1 + 2 * fmax(0, top - model->score)};
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
     const fg_effect *effect = shown_as(part);
