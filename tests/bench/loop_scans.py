@@ -84,7 +84,7 @@ def run_scans(program, options):
     results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh, "form_within")
     if not options.report_only:
         results.run(jobs, work, options.threads)
-    loop_scans_report.write_scans(options.out, results.rows, TIERS, seed)
+    loop_scans_report.write_scans(options.out, results.rows, TIERS, options)
 
 
 def run_curve(program, options):

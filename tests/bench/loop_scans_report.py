@@ -157,12 +157,13 @@ def missed_lines(rows):
     return markdown(["tier", "case", "layout", "there", "said", "R, h, R0 error, µm"], lines)
 
 
-def write_scans(folder, rows, tiers, seed):
+def write_scans(folder, rows, tiers, options):
     groups = list(groups_of(rows, tiers))
     floor = floors(rows)
+    most = f" --cases {options.cases}" if options.cases else ""
     lines = [
         "# The loop on rendered scans", "",
-        f"Made by `python3 tests/bench/loop_scans.py build/foilgauge --seed {seed}`: {len(rows)} inputs, a row each in",
+        f"Made by `python3 tests/bench/loop_scans.py build/foilgauge{most} --seed {options.seed}`: {len(rows)} inputs, a row each in",
         "loop_scans.csv with the effects that were put in. Six designs with and without lip, any rotation, both hands and",
         "polarities, 8 and 16 bit, blur 0.9 to 2 px, noise 0.5 to 2, every bump with its own springback; a third with a tone",
         "curve, a third with shading, a fifth with a halo. Effects of 3 to 30 µm (row steps to 40) at the foil's ends,",
