@@ -30,6 +30,14 @@ typedef struct fg_library {
   bool loaded;
 } fg_library;
 
+/* Makes an fg_library whose `function_names` and `pointers` are of one list; `first`: its start. */
+#define FG_LIBRARY(soname, debian, function_names, pointers, first)                                \
+  {                                                                                                \
+    .file = (soname), .package = (debian), .names = (function_names),                              \
+    .count = sizeof(function_names) / sizeof *(function_names), .functions = (pointers),           \
+    .start = (first), .mutex = PTHREAD_MUTEX_INITIALIZER                                           \
+  }
+
 /* Loads a library and finds its functions, once; by any thread. FG_ERR_IO: it is not installed, or
  * too old. */
 fg_status fg_library_load(fg_context *ctx, fg_library *library);

@@ -198,10 +198,9 @@ fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *s,
   part->log_prior = log(s->request.prior.weight * FG_EVIDENCE_PRIOR) + found.mass;
   if (option->seeded) part->log_prior -= log((double)effect->starts);
   if (fg_effect_is_unnamed(effect)) part->log_prior -= log(FG_UNNAMED_EFFECTS);
-  if (option->sets > 1) {
-    shape_range range; /* its middle is the shape */
-    find_range(s->problem.edge_fit, effect, found.set, part, &range);
-  }
+  double reach[FG_FIELD_SHAPES];
+  if (option->sets > 1)
+    fg_evidence_find_start(s->problem.edge_fit, effect, found.set, part->shape, reach);
   return FG_OK;
 }
 

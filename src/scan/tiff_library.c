@@ -5,12 +5,7 @@ fg_tiff_library fg_libtiff;
 
 static const char *const names[] = {FG_TIFF_FUNCTIONS(FG_LIBRARY_NAME)};
 
-static fg_library library = {.file = FOILGAUGE_TIFF_FILE,
-                             .package = "libtiff6",
-                             .names = names,
-                             .count = sizeof names / sizeof *names,
-                             .functions = &fg_libtiff,
-                             .mutex = PTHREAD_MUTEX_INITIALIZER};
+static fg_library library = FG_LIBRARY(FOILGAUGE_TIFF_FILE, "libtiff6", names, &fg_libtiff, NULL);
 
 fg_status fg_tiff_library_load(fg_context *ctx) {
   return fg_library_load(ctx, &library);

@@ -30,12 +30,7 @@
 static struct pq { PQ_FUNCTIONS(FG_LIBRARY_POINTER) } pq;
 static const char *const names[] = {PQ_FUNCTIONS(FG_LIBRARY_NAME)};
 
-static fg_library libpq = {.file = "libpq.so.5",
-                           .package = "libpq5",
-                           .names = names,
-                           .count = sizeof names / sizeof *names,
-                           .functions = &pq,
-                           .mutex = PTHREAD_MUTEX_INITIALIZER};
+static fg_library libpq = FG_LIBRARY("libpq.so.5", "libpq5", names, &pq, NULL);
 
 static fg_status fail_pq(fg_context *ctx, PGconn *connection) {
   const char *words = pq.errorMessage(connection);

@@ -30,13 +30,7 @@ static void start_curl(void) {
   curl.global_init(CURL_GLOBAL_DEFAULT);
 }
 
-static fg_library libcurl = {.file = "libcurl.so.4",
-                             .package = "libcurl4",
-                             .names = names,
-                             .count = sizeof names / sizeof *names,
-                             .functions = &curl,
-                             .start = start_curl,
-                             .mutex = PTHREAD_MUTEX_INITIALIZER};
+static fg_library libcurl = FG_LIBRARY("libcurl.so.4", "libcurl4", names, &curl, start_curl);
 
 typedef struct http {
   CURL *handle;

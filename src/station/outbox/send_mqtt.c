@@ -40,13 +40,8 @@ static void start_mosquitto(void) {
   broker.lib_init();
 }
 
-static fg_library libmosquitto = {.file = "libmosquitto.so.1",
-                                  .package = "libmosquitto1",
-                                  .names = names,
-                                  .count = sizeof names / sizeof *names,
-                                  .functions = &broker,
-                                  .start = start_mosquitto,
-                                  .mutex = PTHREAD_MUTEX_INITIALIZER};
+static fg_library libmosquitto =
+    FG_LIBRARY("libmosquitto.so.1", "libmosquitto1", names, &broker, start_mosquitto);
 
 typedef struct mqtt {
   struct mosquitto *client;
