@@ -5,72 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "film/film.h"
 #include "film/orbit.h"
-#include "support/test.h"
-
-static const double pi = 3.14159265358979323846;
-
-typedef struct bearing {
-  fg_context ctx;
-  fg_film film;
-  fg_film_case at;
-  fg_film_state state;
-} bearing;
-
-static void open_bearing(bearing *b, const fg_film_mesh *mesh, double lambda, double compliance) {
-  memset(b, 0, sizeof *b);
-  assert_int_equal(fg_film_open(&b->ctx, mesh, false, &b->film), FG_OK);
-  assert_int_equal(fg_film_case_open(&b->ctx, b->film.columns, &b->at), FG_OK);
-  assert_int_equal(fg_film_state_open(&b->ctx, &b->film, &b->state), FG_OK);
-  b->at.lambda = lambda;
-  for (size_t i = 0; i < b->film.columns; i++) {
-    b->at.clearance[i] = b->at.spring[i] = 1;
-    b->at.yield[i] = compliance;
-  }
-  for (size_t i = 0; i < b->film.columns * b->film.nodes; i++)
-    b->state.pressure[i] = 1;
-}
-
-static void close_bearing(bearing *b) {
-  fg_film_state_close(&b->state);
-  fg_film_case_close(&b->at);
-  fg_film_close(&b->film);
-}
-
-static fg_film_mesh ring_of(size_t cells, size_t axial, double half_length) {
-  return (fg_film_mesh){.pads = 1,
-                        .cells = cells,
-                        .axial = axial,
-                        .ring = true,
-                        .arc_rad = 2 * pi,
-                        .half_length = half_length};
-}
-
-static fg_film_mesh pads_of(size_t pads, size_t cells, size_t axial) {
-  return (fg_film_mesh){.pads = pads,
-                        .cells = cells,
-                        .axial = axial,
-                        .arc_rad = 2 * pi / (double)pads,
-                        .half_length = 1};
-}
-
-static void hold_at(bearing *b, double x, double y) {
-  b->state.place[0] = x;
-  b->state.place[1] = y;
-  assert_int_equal(fg_film_newton(&b->ctx, &b->film, &b->at, FG_FILM_PRESSURE, &b->state), FG_OK);
-}
-
-static void balance(bearing *b, double load, double towards_rad) {
-  b->at.load[0] = load * cos(towards_rad);
-  b->at.load[1] = load * sin(towards_rad);
-  assert_int_equal(fg_film_solve(&b->ctx, &b->film, &b->at, &b->state), FG_OK);
-}
-
-static void assert_ratio(double value, double expected, double relative) {
-  if (fabs(value - expected) <= relative * fabs(expected)) return;
-  fail_msg("%.12g is not %.12g within %g", value, expected, relative);
-}
+#include "support/film_bearing.h"
 
 /* Ocvirk 1952, the whole film: f = L pi e (l/R)³ / (12 (1 - e²)^(3/2)) across the eccentricity. */
 static void short_bearing_is_ocvirks(void **unused) {
@@ -123,28 +59,6 @@ static void fast_bearing_keeps_pressure_times_thickness(void **unused) {
                      fg_film_thickness(&b.film, &b.at, &b.state, i),
                  sqrt(1 + 1.5 * e * e), 5e-3);
   close_bearing(&b);
-}
-
-/* A gas bearing of finite length and compressibility number at a small eccentricity e (Ausman's
- * first-order perturbation, 1957): P - 1 = e Re(A exp(i theta)),
- *   A = i L / (1 + i L) (1 - cosh(k z) / cosh(k l)), k² = 1 + i L, l the half length over R. */
-static void light_gas_bearing_is_ausmans(void **unused) {
-  (void)unused;
-  static const double lambdas[] = {0.1, 0.5, 2, 10, 40}, halves[] = {0.5, 1, 2}, e = 1e-3;
-  for (size_t i = 0; i < sizeof lambdas / sizeof *lambdas; i++)
-    for (size_t j = 0; j < sizeof halves / sizeof *halves; j++) {
-      bearing b;
-      double complex il = I * lambdas[i], k = csqrt(1 + il) * halves[j];
-      double complex mean = 2 * halves[j] * il / (1 + il) * (1 - ctanh(k) / k);
-      double size = pi * e * cabs(mean), force[2];
-      const fg_film_mesh mesh = ring_of(192, 32, halves[j]);
-      open_bearing(&b, &mesh, lambdas[i], 0);
-      hold_at(&b, e, 0);
-      fg_film_force(&b.film, &b.state, force);
-      assert_near(force[0], pi * e * creal(mean), 4e-3 * size);
-      assert_near(force[1], -pi * e * cimag(mean), 4e-3 * size);
-      close_bearing(&b);
-    }
 }
 
 static void light_rotors_whirl_at_half_the_speed(void **unused) {
@@ -400,7 +314,6 @@ int main(void) {
       cmocka_unit_test(short_bearing_is_ocvirks),
       cmocka_unit_test(long_bearing_is_sommerfelds),
       cmocka_unit_test(fast_bearing_keeps_pressure_times_thickness),
-      cmocka_unit_test(light_gas_bearing_is_ausmans),
       cmocka_unit_test(light_rotors_whirl_at_half_the_speed),
       cmocka_unit_test(mesh_has_second_order),
       cmocka_unit_test(stiffness_is_the_forces_derivative),
