@@ -45,13 +45,14 @@ size_t fg_effect_columns(const fg_edge_fit *edge_fit, const fg_effect *effect, c
   size_t count = effect->columns, rows = edge_fit->row_count;
   for (size_t i = 0; i < rows; i++) {
     const fg_edge_fit_row *row = &edge_fit->rows[i];
+    const fg_point share = {row->normal.x / FG_EDGE_FIT_PLACES, row->normal.y / FG_EDGE_FIT_PLACES};
     fg_edge_fit_places(row, row->ideal, at);
+    for (size_t c = 0; c < count; c++)
+      columns[c * rows + i] = 0;
     for (int k = 0; k < FG_EDGE_FIT_PLACES; k++) {
       effect->glass(&edge_fit->frame, shape, at[k], d);
       for (size_t c = 0; c < count; c++)
-        columns[c * rows + i] =
-            (k ? columns[c * rows + i] : 0) -
-            (d[c].x * row->normal.x + d[c].y * row->normal.y) / FG_EDGE_FIT_PLACES;
+        columns[c * rows + i] -= d[c].x * share.x + d[c].y * share.y;
     }
   }
   return count;

@@ -329,13 +329,28 @@ static fg_status list_rows(fg_context *ctx, fg_search_columns *s) {
   return FG_OK;
 }
 
+fg_status fg_search_columns_open_work(fg_context *ctx, fg_search_columns *s) {
+  size_t all = s->edge_fit->row_count;
+  s->white = s->work = NULL;
+  FG_TRY(fg_memory_allocate(ctx, all, sizeof *s->white, (void **)&s->white));
+  fg_status status =
+      fg_memory_allocate(ctx, all, FG_EFFECT_COLUMNS_MAX * sizeof *s->work, (void **)&s->work);
+  if (status != FG_OK) fg_search_columns_close_work(s);
+  return status;
+}
+
+void fg_search_columns_close_work(fg_search_columns *s) {
+  free(s->white);
+  free(s->work);
+  s->white = s->work = NULL;
+}
+
 static fg_status allocate_columns(fg_context *ctx, fg_search_columns *s) {
   size_t vector = s->rows * sizeof(double), all = FG_SEARCH_COLUMNS;
   FG_TRY(fg_memory_allocate(ctx, s->edge_fit->parameters + all, vector, (void **)&s->basis));
   size_t max = s->edge_fit->parameters + all;
   FG_TRY(fg_memory_allocate(ctx, max, sizeof *s->first, (void **)&s->first));
   FG_TRY(fg_memory_allocate(ctx, max, sizeof *s->last, (void **)&s->last));
-  FG_TRY(fg_memory_allocate(ctx, s->edge_fit->row_count, sizeof *s->white, (void **)&s->white));
   FG_TRY(fg_whitening_open(ctx, s->edge_fit, &s->whitening));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->values));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->strain));
@@ -344,8 +359,7 @@ static fg_status allocate_columns(fg_context *ctx, fg_search_columns *s) {
   FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->width));
   FG_TRY(fg_memory_allocate(ctx, all * all, sizeof *s->gram, (void **)&s->gram));
   FG_TRY(fg_memory_allocate(ctx, all, sizeof *s->right, (void **)&s->right));
-  return fg_memory_allocate(ctx, s->edge_fit->row_count, FG_EFFECT_COLUMNS_MAX * sizeof *s->work,
-                            (void **)&s->work);
+  return fg_search_columns_open_work(ctx, s);
 }
 
 /* Mean width of every part out: its thickness is a parameter of the geometry. */
@@ -412,8 +426,7 @@ void fg_search_columns_close(fg_search_columns *s) {
   free(s->width);
   free(s->gram);
   free(s->right);
-  free(s->work);
-  free(s->white);
+  fg_search_columns_close_work(s);
   fg_whitening_close(&s->whitening);
   memset(s, 0, sizeof *s);
 }

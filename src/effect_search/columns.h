@@ -55,6 +55,11 @@ fg_status fg_search_columns_open(fg_context *ctx, const fg_edge_fit *edge_fit,
                                  fg_search_columns *columns);
 void fg_search_columns_close(fg_search_columns *columns);
 
+/* Gives a copy of the structure room for work of its own (`work`, `white`): then threads may gather
+ * columns at once, each by its copy. */
+fg_status fg_search_columns_open_work(fg_context *ctx, fg_search_columns *copy);
+void fg_search_columns_close_work(fg_search_columns *copy);
+
 /* Writes weighted columns of an effect at the rows in use, not projected; returns their number. */
 size_t fg_search_gather(const fg_search_columns *columns, const fg_effect *effect,
                         const double *shape, double *out);

@@ -103,6 +103,7 @@ static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold
   for (size_t i = 0; i < edge_fit->row_count; i++)
     keep[i] = c->fold[i] != fold;
   FG_TRY_EXIT(fg_edge_fit_subset(ctx, edge_fit, keep, &others));
+  others.threads = 1; /* this is one of several threads */
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
   FG_TRY_EXIT(c->barred ? fg_search_iterate_again(ctx, &request, set, residual_um)

@@ -57,28 +57,37 @@ static size_t list_unknowns(const fg_effect_set *set, unknown *list) {
   return n;
 }
 
-/* Columns of the effects' unknowns, um of residual per um or per unit of shape. */
+/* Column of a shape, um of residual per unit of it, by its numerical derivative. */
+static void shape_column(const fg_edge_fit *edge_fit, const fg_effect_found *effect, size_t index,
+                         double *work, double *to) {
+  size_t rows = edge_fit->row_count;
+  double shape[FG_FIELD_SHAPES];
+  double step = DERIVE_SHARE * fmax(fabs(effect->shape[index]), SHAPE_MIN);
+  memset(to, 0, rows * sizeof *to);
+  for (int side = -1; side <= 1; side += 2) {
+    memcpy(shape, effect->shape, sizeof shape);
+    shape[index] += side * step;
+    fg_effect_columns(edge_fit, effect->kind, shape, work);
+    for (size_t c = 0; c < effect->columns; c++)
+      for (size_t i = 0; i < rows; i++)
+        to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
+  }
+}
+
+/* Columns of the effects' unknowns, um of residual per um or per unit of shape. An effect's
+ * coefficients follow one another, and its columns are made once for all of them. */
 static void effect_design(const fg_edge_fit *edge_fit, const fg_effect_set *set,
                           const unknown *list, size_t count, double *work, double *design) {
   size_t rows = edge_fit->row_count;
   for (size_t k = 0; k < count; k++) {
     const fg_effect_found *effect = &set->effects[list[k].effect];
-    double *to = design + k * rows, shape[FG_FIELD_SHAPES];
-    if (!list[k].shape) {
-      fg_effect_columns(edge_fit, effect->kind, effect->shape, work);
-      memcpy(to, work + list[k].index * rows, rows * sizeof *to);
+    double *to = design + k * rows;
+    if (list[k].shape) {
+      shape_column(edge_fit, effect, list[k].index, work, to);
       continue;
     }
-    memset(to, 0, rows * sizeof *to);
-    double step = DERIVE_SHARE * fmax(fabs(effect->shape[list[k].index]), SHAPE_MIN);
-    for (int side = -1; side <= 1; side += 2) {
-      memcpy(shape, effect->shape, sizeof shape);
-      shape[list[k].index] += side * step;
-      fg_effect_columns(edge_fit, effect->kind, shape, work);
-      for (size_t c = 0; c < effect->columns; c++)
-        for (size_t i = 0; i < rows; i++)
-          to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
-    }
+    if (list[k].index == 0) fg_effect_columns(edge_fit, effect->kind, effect->shape, work);
+    memcpy(to, work + list[k].index * rows, rows * sizeof *to);
   }
 }
 
@@ -100,10 +109,11 @@ static const double *column_of(const refit *r, size_t k) {
   return k < r->parameters ? r->jacobian + k * rows : r->design + (k - r->parameters) * rows;
 }
 
-/* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
-static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
+/* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts: the weight
+ * of unknown a beside those before it. */
+static double row_weight(const refit *r, size_t i, size_t a) {
   if (!r->edge_fit->views[r->edge_fit->rows[i].view].held_out) return FG_EDGE_FIT_BLOCK;
-  return a < r->parameters && b < r->parameters ? FG_EDGE_FIT_BLOCK * HELD_OUT_WEIGHT : 0;
+  return a < r->parameters ? FG_EDGE_FIT_BLOCK * HELD_OUT_WEIGHT : 0;
 }
 
 static void whiten(const refit *r, double *values) {
@@ -144,8 +154,8 @@ static void hold_free(refit *r, size_t k) {
   gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
 }
 
-/* Adds a row to the normal equations; it depends on few numbers of the geometry, and on all
- * effects. */
+/* Adds a row to the lower half of the normal equations; it depends on few numbers of the geometry,
+ * and on all effects. */
 static void add_row(refit *r, size_t i) {
   size_t own[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
   double value[FG_EDGE_FIT_ROW_PARAMETERS + UNKNOWNS_MAX];
@@ -155,11 +165,18 @@ static void add_row(refit *r, size_t i) {
   for (size_t a = 0; a < count; a++) /* geometry in mm */
     value[a] = column_of(r, own[a])[i] * (a < geometry ? 1000 : 1);
   for (size_t a = 0; a < count; a++) {
-    *gsl_vector_ptr(r->right, own[a]) += row_weight(r, i, own[a], own[a]) * value[a] * r->white[i];
-    for (size_t b = 0; b < count; b++)
-      *gsl_matrix_ptr(r->normal, own[a], own[b]) +=
-          row_weight(r, i, own[a], own[b]) * value[a] * value[b];
+    double *line = gsl_matrix_ptr(r->normal, own[a], 0);
+    double weight = row_weight(r, i, own[a]) * value[a];
+    *gsl_vector_ptr(r->right, own[a]) += weight * r->white[i];
+    for (size_t b = 0; b <= a; b++)
+      line[own[b]] += weight * value[b];
   }
+}
+
+static void mirror(gsl_matrix *m) {
+  for (size_t a = 0; a < m->size1; a++)
+    for (size_t b = 0; b < a; b++)
+      gsl_matrix_set(m, b, a, gsl_matrix_get(m, a, b));
 }
 
 /* Assembles the normal equations of geometry and effects, with the prior of free curves. */
@@ -169,6 +186,7 @@ static void assemble(refit *r) {
   gsl_vector_set_zero(r->right);
   for (size_t i = 0; i < r->edge_fit->row_count; i++)
     add_row(r, i);
+  mirror(r->normal);
   for (size_t k = 0; k < r->unknowns; k++)
     hold_free(r, k);
   for (size_t a = 0; a < n; a++) {

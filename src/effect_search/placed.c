@@ -17,13 +17,11 @@
 /* Finds the shape that explains most beside the geometry alone. */
 static fg_status find_alone(fg_context *ctx, fg_search *s, const fg_effect *kind, double *shape) {
   const fg_field_frame *frame = &s->columns.edge_fit->frame;
-  double *work = NULL;
-  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
+  fg_search_hit hit;
   memcpy(s->columns.left, s->columns.residual, s->columns.rows * sizeof *s->columns.left);
   s->out->noise_um = s->out->integral = 1; /* nothing is judged yet: the largest gain is wanted */
-  fg_search_hit hit = fg_search_find_place(s, s->columns.geometry_rank, kind, work);
+  FG_TRY(fg_search_find_place(ctx, s, s->columns.geometry_rank, kind, &hit));
   *shape = hit.gain > 0 ? hit.at : kind->start(frame, kind->starts / 2, kind->starts);
-  free(work);
   return FG_OK;
 }
 
@@ -80,41 +78,42 @@ fg_status fg_search_add_other_steps(fg_context *ctx, fg_search *s, const fg_effe
 /* ---- ripples and steps that stand out ---- */
 
 /* Adds the most significant candidate, once. */
-static bool add_best(fg_search *s, bool listed_only, double *work) {
+static fg_status add_best(fg_context *ctx, fg_search *s, bool listed_only, bool *added) {
   size_t rank = fg_search_noise(s, false);
   double noise_um = s->out->noise_um, integral = s->out->integral;
   if (listed_only) rank = fg_search_noise(s, true);
   /* The residual beside listed effects may contain the effect sought: it is no noise. */
   s->out->noise_um = noise_um;
   s->out->integral = integral;
-  fg_search_hit best = {0};
+  fg_search_hit best = {0}, found;
   const fg_effect *which = NULL;
+  *added = false;
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_PLACED || !fg_search_seeks(s, kind)) continue;
-    fg_search_hit found = fg_search_find_place(s, rank, kind, work);
+    FG_TRY(fg_search_find_place(ctx, s, rank, kind, &found));
     if (found.gain <= s->policy->placed_chi2 || found.amplitude <= FG_SEARCH_SHAPED_MIN_UM)
       continue;
     if (which && found.gain <= best.gain) continue;
     best = found;
     which = kind;
   }
-  if (!which || s->out->candidate_count >= FG_CANDIDATES_MAX) return false;
+  if (!which || s->out->candidate_count >= FG_CANDIDATES_MAX) return FG_OK;
   s->unfitted |= 1u << s->out->candidate_count;
   fg_search_add(s, &(fg_candidate){.kind = which, .shape = {best.at}});
   s->new_shapes++;
-  return true;
+  *added = true;
+  return FG_OK;
 }
 
 /* Searches beside the listed effects too, because free curves can follow a long ripple. A ripple
  * found there is a candidate like any other; a curve that is no ripple stays the better
  * explanation. */
 fg_status fg_search_find_on_foils(fg_context *ctx, fg_search *s) {
-  double *work = NULL;
-  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
-  for (int pass = 0; pass < 2; pass++)
-    for (int round = 0; round < 2; round++)
-      if (!add_best(s, pass == 0, work)) break;
-  free(work);
+  for (int pass = 0; pass < 2; pass++) {
+    bool added = true;
+    for (int round = 0; round < 2 && added; round++)
+      FG_TRY(add_best(ctx, s, pass == 0, &added));
+  }
   return FG_OK;
 }
 
@@ -141,14 +140,13 @@ static bool is_there(const fg_search *s, const fg_candidate *placed) {
 }
 
 fg_status fg_search_find_in_place(fg_context *ctx, fg_search *s) {
-  double *work = NULL, max = 0;
-  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
+  fg_search_hit hit;
   fg_search_noise(s, false);
-  max = best_alone(s);
+  double max = best_alone(s);
   memcpy(s->columns.left, s->columns.residual, s->columns.rows * sizeof *s->columns.left);
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_PLACED || !fg_search_seeks(s, kind)) continue;
-    fg_search_hit hit = fg_search_find_place(s, s->columns.geometry_rank, kind, work);
+    FG_TRY(fg_search_find_place(ctx, s, s->columns.geometry_rank, kind, &hit));
     fg_candidate found = {.kind = kind, .shape = {hit.at}};
     if (hit.gain < fmax(s->policy->one_more_chi2, max - s->policy->worse_chi2)) continue;
     if (is_there(s, &found)) continue;
@@ -156,7 +154,6 @@ fg_status fg_search_find_in_place(fg_context *ctx, fg_search *s) {
     fg_search_add(s, &found);
     s->new_shapes++;
   }
-  free(work);
   return FG_OK;
 }
 
@@ -179,13 +176,13 @@ static double gain_over_rest(fg_search *s, size_t rank, const fg_candidate *effe
  * versa: the better one is added. */
 fg_status fg_search_find_on_discs(fg_context *ctx, fg_search *s) {
   fg_candidate best = {0};
-  double *work = NULL, max = 0;
+  fg_search_hit hit;
+  double max = 0;
   if (s->out->candidate_count >= FG_CANDIDATES_MAX) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_PLACED || !fg_search_seeks(s, kind)) continue;
     size_t rank = fg_search_noise(s, false);
-    fg_search_hit hit = fg_search_find_place(s, rank, kind, work);
+    FG_TRY(fg_search_find_place(ctx, s, rank, kind, &hit));
     fg_candidate found = {.kind = kind, .shape = {hit.at}};
     if (!(hit.gain > 0) || hit.amplitude <= FG_SEARCH_SHAPED_MIN_UM) continue;
     double gain = gain_over_rest(s, rank, &found);
@@ -193,7 +190,6 @@ fg_status fg_search_find_on_discs(fg_context *ctx, fg_search *s) {
     max = gain;
     best = found;
   }
-  free(work);
   if (max > 0) {
     fg_search_add(s, &best);
     s->new_shapes++;

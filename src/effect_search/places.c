@@ -3,13 +3,17 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/memory.h"
 #include "core/numerics.h"
+#include "core/parallel.h"
 #include "core/small_solve.h"
 #include "effect_search/state.h"
 
 /* Steps of each finer grid between the neighbours of the best place; number of such grids; rows on
  * either side of a step. */
 enum { REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
+/* Places that a thread looks at without a break. */
+enum { AT_ONCE = 9 };
 /* A coarse search uses one start in so many. */
 enum { COARSER = 40 };
 /* Mean square of a column beside the basis, below which it has no information: one row in 64 000.
@@ -31,10 +35,23 @@ static bool has_both_sides(const fg_search_columns *c, const fg_effect *kind, do
   return low >= SIDE_ROWS && all - low >= SIDE_ROWS;
 }
 
+/* Places of one shaped effect that threads look at, and their hits. */
+typedef struct look {
+  const fg_search *search;
+  size_t rank;
+  const fg_effect *kind;
+  const fg_search_grid *grid; /* of the starts' columns; NULL: they are not stored */
+  bool fill;                  /* the grid is to be filled */
+  double low, step;           /* of places that are no starts */
+  size_t starts;              /* 0: no starts */
+  fg_search_hit *hit;
+  size_t count;
+} look;
+
 /* Gain of columns beside everything else, in chi². */
-static fg_search_hit gain_of(const fg_search *s, size_t rank, double place, size_t count,
-                             const double *columns) {
-  const fg_search_columns *c = &s->columns;
+static fg_search_hit gain_of(const look *l, double place, size_t count, const double *columns) {
+  const fg_search_columns *c = &l->search->columns;
+  const fg_explanations *out = l->search->out;
   double x[FG_SMALL_MAX], square = 0;
   fg_normal_equations system;
   fg_search_hit none = {0, 0, place}, found = none;
@@ -46,7 +63,7 @@ static fg_search_hit gain_of(const fg_search *s, size_t rank, double place, size
     for (size_t b = 0; b <= a; b++)
       system.matrix[a][b] = fg_dot_in_lanes(columns + a * c->rows, columns + b * c->rows, c->rows);
   }
-  for (size_t k = 0; k < rank; k++) {
+  for (size_t k = 0; k < l->rank; k++) {
     double along[FG_SMALL_MAX];
     for (size_t a = 0; a < count; a++) {
       along[a] = fg_search_along(c, k, columns + a * c->rows);
@@ -61,36 +78,59 @@ static fg_search_hit gain_of(const fg_search *s, size_t rank, double place, size
     found.gain += x[a] * system.right[a];
     square += x[a] * x[a];
   }
-  found.gain /= s->out->noise_um * s->out->noise_um * s->out->integral;
+  found.gain /= out->noise_um * out->noise_um * out->integral;
   found.amplitude = sqrt(square);
   return found;
 }
 
-static fg_search_hit gain_at(const fg_search *s, size_t rank, const fg_effect *kind, double place,
-                             double *work) {
+/* Looks at place i; `own` has the thread's room for work, `work` for a start that is not stored. */
+static fg_search_hit look_at_place(const look *l, size_t i, const fg_search_columns *own,
+                                   double *work) {
+  const fg_field_frame *frame = &own->edge_fit->frame;
+  double place = l->starts ? l->kind->start(frame, i, l->starts) : l->low + l->step * (double)i;
   double shape[FG_FIELD_SHAPES] = {place};
-  if (kind->jumps && !has_both_sides(&s->columns, kind, place)) return (fg_search_hit){0, 0, place};
-  size_t count = fg_search_gather(&s->columns, kind, shape, work);
-  return gain_of(s, rank, place, count, work);
+  double *columns = l->grid ? l->grid->values + i * l->grid->columns * own->rows : work;
+  size_t count = l->grid ? l->grid->columns : l->kind->columns;
+  if (!l->grid || l->fill) count = fg_search_gather(own, l->kind, shape, columns);
+  if (l->kind->jumps && !has_both_sides(own, l->kind, place)) return (fg_search_hit){0, 0, place};
+  return gain_of(l, place, count, columns);
+}
+
+static fg_status look_at_places(fg_context *ctx, void *shared, size_t item) {
+  const look *l = shared;
+  fg_search_columns own = l->search->columns;
+  size_t end = (item + 1) * AT_ONCE < l->count ? (item + 1) * AT_ONCE : l->count;
+  double *work = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_search_columns_open_work(ctx, &own));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, own.rows, FG_SMALL_MAX * sizeof *work, (void **)&work));
+  for (size_t i = item * AT_ONCE; i < end; i++)
+    l->hit[i] = look_at_place(l, i, &own, work);
+exit:
+  free(work);
+  fg_search_columns_close_work(&own);
+  return status;
+}
+
+static fg_status look_at_all_places(fg_context *ctx, look *l) {
+  unsigned threads = l->search->columns.edge_fit->threads;
+  return fg_parallel_run(ctx, threads, (l->count + AT_ONCE - 1) / AT_ONCE, look_at_places, l);
 }
 
 /* ---- the grid of starts ---- */
 
-/* Returns the columns over all starts; NULL: they would need too much memory. */
-static const fg_search_grid *grid_of(fg_search *s, const fg_effect *kind, size_t starts) {
-  size_t vector = s->columns.rows * sizeof(double), count = kind->columns;
+/* Looks for the stored columns over all starts, or makes room for them, unless it were too much. */
+static void find_grid(fg_search *s, look *l) {
+  size_t vector = s->columns.rows * sizeof(double), count = l->kind->columns;
   for (size_t g = 0; g < s->grids; g++)
-    if (s->grid[g].kind == kind) return &s->grid[g];
-  if (s->grids == FG_SEARCH_GRIDS || starts * count * vector > GRID_BYTES_MAX) return NULL;
+    if (s->grid[g].kind == l->kind) l->grid = &s->grid[g];
+  if (l->grid || s->grids == FG_SEARCH_GRIDS || l->starts * count * vector > GRID_BYTES_MAX) return;
   fg_search_grid *grid = &s->grid[s->grids];
-  *grid = (fg_search_grid){kind, starts, count, malloc(starts * count * vector)};
-  if (!grid->values) return NULL;
-  for (size_t i = 0; i < starts; i++) {
-    double shape[FG_FIELD_SHAPES] = {kind->start(&s->columns.edge_fit->frame, i, starts)};
-    fg_search_gather(&s->columns, kind, shape, grid->values + i * count * s->columns.rows);
-  }
+  *grid = (fg_search_grid){l->kind, l->starts, count, malloc(l->starts * count * vector)};
+  if (!grid->values) return;
   s->grids++;
-  return grid;
+  l->grid = grid;
+  l->fill = true;
 }
 
 void fg_search_free_grids(fg_search *s) {
@@ -99,39 +139,46 @@ void fg_search_free_grids(fg_search *s) {
   s->grids = 0;
 }
 
-static fg_search_hit gain_at_start(fg_search *s, size_t rank, const fg_effect *kind, size_t i,
-                                   size_t starts, double *work) {
-  double place = kind->start(&s->columns.edge_fit->frame, i, starts);
-  const fg_search_grid *grid = grid_of(s, kind, starts);
-  if (!grid) return gain_at(s, rank, kind, place, work);
-  if (kind->jumps && !has_both_sides(&s->columns, kind, place)) return (fg_search_hit){0, 0, place};
-  return gain_of(s, rank, place, grid->columns, grid->values + i * grid->columns * s->columns.rows);
+/* Looks at ever finer grids of places between low and high. */
+static fg_status look_finer(fg_context *ctx, look *l, double low, double high,
+                            fg_search_hit *best) {
+  bool coarse = l->search->columns.edge_fit->coarse;
+  l->grid = NULL;
+  l->starts = 0;
+  l->count = REFINE_STEPS + 1;
+  for (int level = 0; level < (coarse ? 1 : REFINE_LEVELS) && best->gain > 0; level++) {
+    l->low = low;
+    l->step = (high - low) / REFINE_STEPS;
+    FG_TRY(look_at_all_places(ctx, l));
+    for (size_t i = 0; i < l->count; i++)
+      if (l->hit[i].gain > best->gain) *best = l->hit[i];
+    low = best->at - l->step;
+    high = best->at + l->step;
+  }
+  return FG_OK;
 }
 
-/* The best place over a grid of starts, then finer around it. */
-fg_search_hit fg_search_find_place(fg_search *s, size_t rank, const fg_effect *kind, double *work) {
+fg_status fg_search_find_place(fg_context *ctx, fg_search *s, size_t rank, const fg_effect *kind,
+                               fg_search_hit *best) {
   const fg_field_frame *frame = &s->columns.edge_fit->frame;
-  fg_search_hit best = {0};
-  bool coarse = s->columns.edge_fit->coarse;
-  size_t which = 0, starts = kind->starts / (coarse ? COARSER : 1);
+  size_t which = 0, starts = kind->starts / (s->columns.edge_fit->coarse ? COARSER : 1);
+  look l = {.search = s, .rank = rank, .kind = kind, .starts = starts, .count = starts};
+  fg_status status = FG_OK;
+  *best = (fg_search_hit){0};
+  FG_TRY(fg_memory_allocate(ctx, starts > REFINE_STEPS ? starts : REFINE_STEPS + 1, sizeof *l.hit,
+                            (void **)&l.hit));
+  find_grid(s, &l);
+  FG_TRY_EXIT(look_at_all_places(ctx, &l));
   for (size_t i = 0; i < starts; i++) {
-    fg_search_hit tried = gain_at_start(s, rank, kind, i, starts, work);
-    if (tried.gain <= best.gain) continue;
-    best = tried;
+    if (l.hit[i].gain <= best->gain) continue;
+    *best = l.hit[i];
     which = i;
   }
-  double low = kind->start(frame, which > 0 ? which - 1 : 0, starts);
-  double high = kind->start(frame, which + 1 < starts ? which + 1 : which, starts);
-  for (int level = 0; level < (coarse ? 1 : REFINE_LEVELS) && best.gain > 0; level++) {
-    double step = (high - low) / REFINE_STEPS;
-    for (size_t i = 0; i <= REFINE_STEPS; i++) {
-      fg_search_hit tried = gain_at(s, rank, kind, low + step * (double)i, work);
-      if (tried.gain > best.gain) best = tried;
-    }
-    low = best.at - step;
-    high = best.at + step;
-  }
-  return best;
+  FG_TRY_EXIT(look_finer(ctx, &l, kind->start(frame, which > 0 ? which - 1 : 0, starts),
+                         kind->start(frame, which + 1 < starts ? which + 1 : which, starts), best));
+exit:
+  free(l.hit);
+  return status;
 }
 
 double fg_search_rest_of_step(const fg_search_columns *c, size_t rank, const fg_effect *kind,

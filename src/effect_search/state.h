@@ -161,11 +161,12 @@ void fg_search_describe(fg_search *s, const fg_search_baseline *y);
 #define FG_SEARCH_SHAPED_MIN_UM 0.15
 
 /* Best place of a shaped effect beside the first `rank` vectors of the basis, with `left` their
- * residual: its gain in chi² and size in um. `work` has room for two columns. */
+ * residual: its gain in chi² and size in um. */
 typedef struct fg_search_hit {
   double gain, amplitude, at;
 } fg_search_hit;
-fg_search_hit fg_search_find_place(fg_search *s, size_t rank, const fg_effect *kind, double *work);
+fg_status fg_search_find_place(fg_context *ctx, fg_search *s, size_t rank, const fg_effect *kind,
+                               fg_search_hit *best);
 void fg_search_free_grids(fg_search *s);
 /* Returns the part of a step at this place that the basis leaves, as a mean square per um²;
  * INFINITY when too few rows lie on one side. */

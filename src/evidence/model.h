@@ -8,7 +8,7 @@
 #define FG_EVIDENCE_MODEL_H
 
 #include "effect/set.h"
-#include "evidence/problem.h"
+#include "evidence/products.h"
 #include "evidence/rivals.h"
 #include "evidence/trial.h"
 

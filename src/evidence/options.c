@@ -294,16 +294,44 @@ static fg_status add_form_errors(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
+/* ---- all options ---- */
+
+/* The columns of an option's sets: options may share them. */
+static void note_sets(const fg_evidence_option *option, size_t *first) {
+  for (size_t c = 0; option->each && c < option->sets * option->each; c++) {
+    size_t *own = &first[option->first + c], set = option->first + c - c % option->each;
+    if (set < *own) *own = set;
+  }
+}
+
+static fg_status find_own_products(fg_context *ctx, fg_evidence_search *s) {
+  fg_evidence_problem *p = &s->problem;
+  size_t *first = NULL;
+  FG_TRY(fg_memory_allocate(ctx, p->count + 1, sizeof *first, (void **)&first));
+  for (size_t c = 0; c < p->count; c++)
+    first[c] = c;
+  for (size_t o = 0; o < s->option_count; o++)
+    note_sets(&s->options[o], first);
+  fg_status status = fg_evidence_find_own_products(ctx, p, first, s->request.threads);
+  free(first);
+  return status;
+}
+
+static fg_status add_unnamed(fg_context *ctx, fg_evidence_search *s) {
+  for (const fg_effect *effect = fg_unnamed_effects; effect->id; effect++)
+    if (!has_name(s->problem.edge_fit, effect->id, 0) &&
+        fg_unnamed_shows(effect, s->problem.edge_fit))
+      FG_TRY(add_shaped(ctx, effect, s));
+  return FG_OK;
+}
+
 fg_status fg_evidence_list_options(fg_context *ctx, const double *jacobian, fg_evidence_search *s) {
   FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_OPTIONS, sizeof *s->options, (void **)&s->options));
   FG_TRY(s->problem.edge_fit->discs ? add_form_errors(ctx, s) : add_scatter(ctx, jacobian, s));
   FG_TRY(add_rivals(ctx, s));
   FG_TRY(add_effects(ctx, s));
-  for (const fg_effect *effect = fg_unnamed_effects; effect->id; effect++)
-    if (!has_name(s->problem.edge_fit, effect->id, 0) &&
-        fg_unnamed_shows(effect, s->problem.edge_fit))
-      FG_TRY(add_shaped(ctx, effect, s));
+  FG_TRY(add_unnamed(ctx, s));
   for (size_t k = 0; k < s->request.seeds; k++)
     FG_TRY(add_seeds(ctx, &s->request.seed[k], s));
-  return FG_OK;
+  return find_own_products(ctx, s);
 }

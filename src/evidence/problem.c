@@ -285,32 +285,3 @@ void fg_evidence_put_back(fg_evidence_problem *p, size_t column, double amplitud
   for (size_t c = 0; c < p->count; c++)
     p->right[c] = fg_dot_in_lanes(p->values + c * p->rows, p->residual, p->rows);
 }
-
-/* Returns where products of two columns that lie near each other are kept; NULL: they do not. */
-static double *near_product(const fg_evidence_problem *p, size_t a, size_t b) {
-  size_t later = a > b ? a : b, before = a > b ? a - b : b - a;
-  return before < FG_EVIDENCE_NEAR ? p->near + later * FG_EVIDENCE_NEAR + before : NULL;
-}
-
-static double *far_product(fg_evidence_problem *p, size_t column, size_t c) {
-  if (!p->gram[column] && p->gram[c] && !isnan(p->gram[c][column])) return &p->gram[c][column];
-  if (!p->gram[column] && (p->gram[column] = malloc(FG_EVIDENCE_COLUMNS * sizeof(double))))
-    for (size_t k = 0; k < FG_EVIDENCE_COLUMNS; k++)
-      p->gram[column][k] = NAN;
-  return p->gram[column] ? &p->gram[column][c] : NULL;
-}
-
-void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, size_t count,
-                          double *into) {
-  const double *own = p->values + column * p->rows;
-  for (size_t c = first; c < first + count; c++) {
-    double *known = near_product(p, column, c);
-    if (!known) known = far_product(p, column, c);
-    double value = known ? *known : NAN;
-    if (isnan(value) && p->gram[c]) value = p->gram[c][column];
-    if (isnan(value))
-      value = fg_evidence_dot(own, p->span[column], p->values + c * p->rows, p->span[c]);
-    if (known) *known = value;
-    into[c - first] = value;
-  }
-}

@@ -2,7 +2,7 @@
 /* Rows of an edge fit as one linear Gaussian problem: residual = geometry + effects + noise.
  *
  * All values are whitened, divided by the noise, and beside the geometry's flat directions: those
- * that no prior bounds. Products of columns are computed when they are first asked for. */
+ * that no prior bounds. Products of columns are in evidence/products.h. */
 #ifndef FG_EVIDENCE_PROBLEM_H
 #define FG_EVIDENCE_PROBLEM_H
 
@@ -74,8 +74,4 @@ static inline bool fg_evidence_has_room(const fg_evidence_problem *problem, size
 }
 /* Measures a column's amplitude from another zero: it was `amplitude` above it. */
 void fg_evidence_put_back(fg_evidence_problem *problem, size_t column, double amplitude);
-/* Fills `into` with the products of a column with columns [first, first + count). */
-void fg_evidence_products(fg_evidence_problem *problem, size_t column, size_t first, size_t count,
-                          double *into);
-
 #endif

@@ -156,36 +156,53 @@ static void keep_model(fg_evidence_search *s, const fg_evidence_model *model) {
   if (s->count < FG_EVIDENCE_MODELS) s->models[s->count++] = *model;
 }
 
-/* Adds every option to a model, of `named` those with a name alone. */
-static fg_status list_extensions(fg_context *ctx, fg_evidence_search *s,
-                                 const fg_evidence_factor *factor, const fg_evidence_model *from,
-                                 bool named, fg_evidence_extension *list, size_t *count) {
-  for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
-    const fg_evidence_option *option = &s->options[o];
-    fg_evidence_extension *one = &list[*count];
-    if (!may_join(s, from, option) || (named && !bears_name(option))) continue;
-    *one = (fg_evidence_extension){.option = option, .part = &s->store[s->stored]};
-    FG_TRY(option->rival
-               ? fg_evidence_fit_rival(ctx, s, factor, option, one->part, &one->evidence)
-               : fg_evidence_fit_effect(ctx, s, factor, option, one->part, &one->evidence));
-    s->stored++;
-    ++*count;
-  }
-  return FG_OK;
-}
-
-/* Extensions of one model whose shapes are refined. */
-typedef struct refinement {
-  const fg_evidence_search *search;
+/* Extensions of one model that threads fit. */
+typedef struct extending {
+  fg_evidence_search *search;
   const fg_evidence_factor *factor;
   double gain_max;
   fg_evidence_extension *list;
-} refinement;
+  size_t count;
+} extending;
+
+/* Lists the options that may join a model, of `named` those with a name alone. */
+static void list_extensions(const fg_evidence_model *from, bool named, extending *e) {
+  fg_evidence_search *s = e->search;
+  for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
+    const fg_evidence_option *option = &s->options[o];
+    if (!may_join(s, from, option) || (named && !bears_name(option))) continue;
+    e->list[e->count++] = (fg_evidence_extension){.option = option, .part = &s->store[s->stored++]};
+  }
+}
+
+/* Finds what threads would otherwise write to one place: products with the columns of the model. */
+static fg_status find_products(fg_context *ctx, const extending *e) {
+  fg_evidence_problem *p = &e->search->problem;
+  bool *wanted = NULL;
+  FG_TRY(fg_memory_allocate(ctx, p->count + 1, sizeof *wanted, (void **)&wanted));
+  for (size_t i = 0; i < e->count; i++) {
+    const fg_evidence_option *option = e->list[i].option;
+    memset(wanted + option->first, true, option->sets * option->each);
+  }
+  fg_status status = fg_evidence_find_products(ctx, p, e->factor->column, e->factor->count, wanted,
+                                               e->search->request.threads);
+  free(wanted);
+  return status;
+}
+
+static fg_status fit_one(fg_context *ctx, void *shared, size_t item) {
+  const extending *e = shared;
+  fg_evidence_extension *one = &e->list[item];
+  return one->option->rival ? fg_evidence_fit_rival(ctx, e->search, e->factor, one->option,
+                                                    one->part, &one->evidence)
+                            : fg_evidence_fit_effect(ctx, e->search, e->factor, one->option,
+                                                     one->part, &one->evidence);
+}
 
 static fg_status refine_one(fg_context *ctx, void *shared, size_t item) {
-  const refinement *r = shared;
-  if (!r->list[item].option->effect) return FG_OK;
-  return fg_evidence_refine_effect(ctx, r->search, r->factor, r->gain_max, &r->list[item]);
+  const extending *e = shared;
+  if (!e->list[item].option->effect) return FG_OK;
+  return fg_evidence_refine_effect(ctx, e->search, e->factor, e->gain_max, &e->list[item]);
 }
 
 static fg_status keep_extension(fg_context *ctx, fg_evidence_search *s,
@@ -209,15 +226,17 @@ static fg_status extend_model(fg_context *ctx, fg_evidence_search *s, const fg_e
                               bool named) {
   fg_evidence_extension list[FG_EVIDENCE_OPTIONS];
   fg_evidence_factor factor;
-  refinement refined = {.search = s, .factor = &factor, .list = list};
+  extending e = {.search = s, .factor = &factor, .list = list};
+  unsigned threads = s->request.threads;
   fg_status status = FG_OK;
-  size_t count = 0;
   FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, from, &factor));
-  FG_TRY_EXIT(list_extensions(ctx, s, &factor, from, named, list, &count));
-  for (size_t i = 0; i < count; i++)
-    refined.gain_max = fmax(refined.gain_max, list[i].evidence - factor.evidence);
-  FG_TRY_EXIT(fg_parallel_run(ctx, s->request.threads, count, refine_one, &refined));
-  for (size_t i = 0; i < count; i++)
+  list_extensions(from, named, &e);
+  FG_TRY_EXIT(find_products(ctx, &e));
+  FG_TRY_EXIT(fg_parallel_run(ctx, threads, e.count, fit_one, &e));
+  for (size_t i = 0; i < e.count; i++)
+    e.gain_max = fmax(e.gain_max, list[i].evidence - factor.evidence);
+  FG_TRY_EXIT(fg_parallel_run(ctx, threads, e.count, refine_one, &e));
+  for (size_t i = 0; i < e.count; i++)
     FG_TRY_EXIT(keep_extension(ctx, s, from, &list[i]));
 exit:
   fg_evidence_factor_close(&factor);

@@ -16,7 +16,10 @@ void fg_field_splines(double low, double high, size_t knots, double at,
   double spacing = (high - low) / (double)(knots - 1);
   double place = (fmax(low, fmin(high, at)) - low) / spacing;
   for (size_t i = 0; i < FG_FIELD_COLUMNS; i++)
-    values[i] = i < knots ? 1.5 * bspline(place - (double)i) : 0;
+    values[i] = 0;
+  /* A spline is 0 from two knots on. */
+  for (size_t i = place > 2 ? (size_t)(place - 1) : 0; i < knots && (double)i < place + 2; i++)
+    values[i] = 1.5 * bspline(place - (double)i);
 }
 
 fg_point fg_field_at(const fg_field_list *list, fg_point nominal) {

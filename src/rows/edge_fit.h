@@ -104,6 +104,7 @@ typedef struct fg_edge_fit {
   double psi_rad[2];    /* range of the rows' psi */
   size_t parameters;    /* of the geometry */
   bool coarse;          /* searches are fast (few starts) */
+  unsigned threads;     /* of a search on these rows; 0: one for each core */
   bool proposes;        /* the search proposes, evidence decides (scan_loop/evidence.c) */
   const char *left_out; /* ids of effects that no search looks for, with commas; NULL: none */
   bool discs;           /* parts are discs: one circle each */

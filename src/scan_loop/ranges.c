@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "scan_loop/state.h"
 
 /* Standard uncertainties that a range reaches beyond its values: 95 %. */
@@ -99,40 +100,59 @@ static void widen_step_place(fg_effect_set *set, const fg_effect_set *other) {
     }
 }
 
-/* Extends the ranges by one explanation other than the winner. One that cannot be fitted is
- * skipped. */
-static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
-                          fg_measurement *tried) {
+/* A tie's explanations, each fitted to rows of its own. */
+typedef struct tie_fits {
+  const fg_scan_loop *loop;
+  fg_joint_fit_result *fit; /* by explanation; of the winner, and of one that cannot be fitted: 0 */
+} tie_fits;
+
+static fg_status fit_explanation(fg_context *ctx, void *shared, size_t item) {
+  const tie_fits *tie = shared;
+  fg_joint_fit_result *fit = &tie->fit[item];
+  fg_edge_fit rows;
   fg_effect_set set;
-  fg_joint_fit_result fit;
-  fg_search_take(&loop->explanations, explanation, &set);
-  fg_status status = fg_joint_fit_open(ctx, &loop->edge_fit, &set, &fit);
-  if (status == FG_ERR_NUMERIC) return FG_OK;
-  if (status != FG_OK) return status;
+  if (item == 0) return FG_OK;
+  fg_search_take(&tie->loop->explanations, item, &set);
+  FG_TRY(fg_edge_fit_subset(ctx, &tie->loop->edge_fit, NULL, &rows));
+  fg_status status = fg_joint_fit_open(ctx, &rows, &set, fit);
+  if (status == FG_OK) fit->edge_fit = &tie->loop->edge_fit;
+  fg_edge_fit_free(&rows);
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* Extends the ranges by one explanation other than the winner. */
+static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
+                          const fg_joint_fit_result *fit, fg_measurement *tried) {
+  if (!fit->edge_fit) return FG_OK;
   loop->unlikely[loop->tie_count] = fg_scan_loop_is_unlikely(&loop->explanations, explanation);
-  loop->tie[loop->tie_count++] = fit.set;
-  status = fg_scan_loop_correct_all(ctx, loop, &fit, tried);
+  loop->tie[loop->tie_count++] = fit->set;
+  fg_status status = fg_scan_loop_correct_all(ctx, loop, fit, tried);
   if (status == FG_OK) widen_all(loop, tried);
   if (status == FG_OK && !loop->by_evidence) /* its mean is over all of them */
-    status = fg_scan_loop_take_moves(ctx, loop, explanation, &fit, tried);
+    status = fg_scan_loop_take_moves(ctx, loop, explanation, fit, tried);
   for (size_t i = 0; i < loop->scan_count; i++)
     fg_measurement_free(&tried[i]);
-  fg_joint_fit_close(&fit);
   return status;
 }
 
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop) {
   fg_status status = FG_OK;
   fg_measurement *tried = NULL;
-  FG_TRY(allocate_ranges(ctx, loop));
-  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *tried, (void **)&tried));
+  size_t count = loop->explanations.count;
+  tie_fits tie = {.loop = loop};
+  FG_TRY_EXIT(allocate_ranges(ctx, loop));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *tried, (void **)&tried));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *tie.fit, (void **)&tie.fit));
   widen_all(loop, loop->after);
-  for (size_t m = 1; m < loop->explanations.count && status == FG_OK; m++)
-    status = widen_by(ctx, loop, m, tried);
-  free(tried);
-  /* The geometry in force is the winner's again. */
-  if (status == FG_OK) status = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, NULL);
+  FG_TRY_EXIT(fg_parallel_run(ctx, loop->options.threads, count, fit_explanation, &tie));
+  for (size_t m = 1; m < count; m++)
+    FG_TRY_EXIT(widen_by(ctx, loop, m, &tie.fit[m], tried));
   for (size_t k = 0; k < loop->tie_count; k++)
     widen_step_place(&loop->set, &loop->tie[k]);
+exit:
+  for (size_t m = 0; tie.fit && m < count; m++)
+    fg_joint_fit_close(&tie.fit[m]);
+  free(tie.fit);
+  free(tried);
   return status;
 }

@@ -66,6 +66,7 @@ static fg_status set_apart(fg_context *ctx, const fg_edge_fit *together, apart *
   if (status != FG_OK) return status;
   a->edge_fit.coarse = true; /* only few effects count here, and curves not at all */
   a->edge_fit.frame = together->frame;
+  a->edge_fit.threads = together->threads;
   FG_TRY(fg_memory_allocate(ctx, a->edge_fit.row_count, sizeof *a->residual_um,
                             (void **)&a->residual_um));
   return fg_search_run(ctx, &a->edge_fit, &a->set, &a->explanations, a->residual_um);

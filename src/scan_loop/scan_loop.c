@@ -73,6 +73,7 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   free(views);
   if (status != FG_OK) return status;
   loop->edge_fit.coarse = loop->options.coarse;
+  loop->edge_fit.threads = loop->options.threads;
   loop->edge_fit.proposes = !loop->options.coarse && fg_evidence_fits(&loop->edge_fit);
   loop->edge_fit.left_out = loop->options.without;
   if (loop->options.coarse) fg_edge_fit_find_frame(&loop->edge_fit);
