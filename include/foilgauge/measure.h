@@ -17,14 +17,15 @@ typedef void fg_measure_progress(void *user, int64_t rows_done, int64_t rows);
 #define FG_MEASURE_MEMORY_CAP_MIB 2048
 
 typedef struct fg_measure_options {
-  double dpi;                    /* 0: the file's */
-  unsigned threads;              /* 0: one per core */
-  fg_channel channel;            /* of a colour scan */
-  bool allow_lossy;              /* as in fg_scan_options */
-  bool only_file;                /* as in fg_scan_options */
-  bool sum_failed;               /* also find the SHA-256 of a file that cannot be measured */
-  uint64_t pixel_cap;            /* refuse larger scans; 0: FG_SCAN_PIXEL_CAP */
-  size_t memory_cap;             /* limit of rows and tiles, bytes; 0: FG_MEASURE_MEMORY_CAP_MIB */
+  double dpi;         /* 0: the file's */
+  unsigned threads;   /* 0: one per core */
+  fg_channel channel; /* of a colour scan */
+  bool allow_lossy;   /* as in fg_scan_options */
+  bool only_file;     /* as in fg_scan_options */
+  bool sum_failed;    /* also find the SHA-256 of a file that cannot be measured */
+  bool without_plain; /* no scanner's model with a level follows: see fg_strip.plain_mm */
+  uint64_t pixel_cap; /* refuse larger scans; 0: FG_SCAN_PIXEL_CAP */
+  size_t memory_cap;  /* limit of rows and tiles, bytes; 0: FG_MEASURE_MEMORY_CAP_MIB */
   fg_measure_progress *progress; /* NULL: none */
   void *progress_user;
 } fg_measure_options;

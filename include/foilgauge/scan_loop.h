@@ -98,6 +98,8 @@ void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_f
 const char *fg_scanner_model_sha256(const fg_scanner_model *model);
 /* Returns true when other explanations fitted the model's scans as well. */
 bool fg_scanner_model_is_tied(const fg_scanner_model *model);
+/* True where it holds the level of edges, by gauges; NULL: false. */
+bool fg_scanner_model_has_level(const fg_scanner_model *model);
 /* Returns true when the model has neither effects nor an edge level and corrects nothing. */
 bool fg_scanner_model_is_empty(const fg_scanner_model *model);
 /* Notes in a design whose scale the model in use has: of gauges of known size, or none; and what

@@ -73,7 +73,8 @@ typedef struct fg_strip {
   bool bright;                 /* brighter than its surroundings */
   double spread_px, asymmetry; /* of its edges, see vision/edge_spread.h; NaN: not seen */
   /* Thickness, blur and contrast (counts of 255) with counts used as light, whatever tone curve the
-   * edges show. A gauge is compared by them. NaN: not measured. */
+   * edges show. Gauges and the level of a scanner's model are applied by them. NaN: not measured,
+   * or not wanted (fg_measure_options.without_plain) and a tone curve was found. */
   double plain_mm, plain_blur_um, plain_counts;
   bool plain_side_band; /* as FG_STRIP_SIDE_BAND */
   double gamma;         /* exponent of the tone curve found */

@@ -280,6 +280,7 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   const char *path = run->arguments.scans[index];
   fg_report_scan *scan = &run->scans[index];
   fg_progress_begin(&progress, path);
+  options_of_scan.without_plain = !fg_scanner_model_has_level(run->model);
   options_of_scan.progress = fg_progress_show;
   options_of_scan.progress_user = &progress;
   fg_status status =

@@ -301,7 +301,8 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
                                       .allow_lossy = settings->allow_lossy,
                                       .threads = 1,
                                       .only_file = true,
-                                      .sum_failed = true};
+                                      .sum_failed = true,
+                                      .without_plain = !fg_scanner_model_has_level(run->model)};
   const char *scan = fg_manifest_scan(&run->manifest, item);
   fg_context inner = {.message = ""};
   fg_measurement measurement;

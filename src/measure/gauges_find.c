@@ -103,7 +103,7 @@ fg_status fg_gauge_test_leaf(fg_context *ctx, const fg_gauge_object *object, con
   if (trace->count < 2 || bend_of(trace) > bend_max(&m->design)) return FG_OK;
   *taken = true;
   const fg_edge_options options = {
-      .dpi = m->dpi, .threads = threads, .linear = m->design.tone == FG_TONE_LINEAR};
+      .dpi = m->dpi, .threads = threads, .linear = m->design.tone == FG_TONE_LINEAR, .plain = true};
   fg_status status =
       fg_edges_measure(ctx, object->tiles, object->segmentation, trace, &options, &strip);
   if (status == FG_ERR_NUMERIC) return FG_OK;

@@ -83,7 +83,7 @@ static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_
   visit v = {.options = options};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_budget_reserve(ctx, &budget, (size_t)fg_scan_get_info(scan)->memory_bytes));
-  FG_TRY_EXIT(fg_session_create(ctx, m, options->threads, &v.session));
+  FG_TRY_EXIT(fg_session_create(ctx, m, options->threads, !options->without_plain, &v.session));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, visit_strip, &v, &budget, &tiles, m->sha256));
   FG_TRY_EXIT(fg_session_finish(ctx, v.session));
   if (m->foil_count == 0) status = fail_empty(ctx, m);

@@ -43,6 +43,7 @@ struct fg_session {
   fg_measurement *measurement;
   fg_islands *islands;
   unsigned threads;
+  bool plain;
   fg_thread workers[WORKERS_MAX];
   unsigned worker_count;
   pthread_mutex_t lock; /* of everything below */
@@ -111,7 +112,10 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
                                const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
   fg_foil foil = {0};
-  const fg_edge_options edges = {m->dpi, s->threads, m->design.tone == FG_TONE_LINEAR};
+  const fg_edge_options edges = {.dpi = m->dpi,
+                                 .threads = s->threads,
+                                 .linear = m->design.tone == FG_TONE_LINEAR,
+                                 .plain = s->plain || m->design.gauge_count};
   fg_status status = fg_edges_measure(ctx, &j->view, seg, trace, &edges, &foil.strip);
   find_loss(m, &foil.strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, &m->design, s->threads, &foil);
@@ -295,12 +299,13 @@ static void *run_worker(void *session) {
 }
 
 fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, unsigned threads,
-                            fg_session **session) {
+                            bool plain, fg_session **session) {
   *session = NULL;
   fg_session *s = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *s, (void **)&s));
   s->measurement = measurement;
   s->threads = threads ? threads : fg_core_count();
+  s->plain = plain;
   pthread_mutex_init(&s->lock, NULL);
   pthread_cond_init(&s->changed, NULL);
   *session = s;

@@ -11,9 +11,10 @@
 
 typedef struct fg_session fg_session;
 
-/* `measurement` must hold design and dpi; foils are added to it by fg_session_finish. */
+/* `measurement` must hold design and dpi; foils are added to it by fg_session_finish. `plain`: as
+ * of fg_edge_options, whether or not the design has gauges. */
 fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, unsigned threads,
-                            fg_session **session);
+                            bool plain, fg_session **session);
 
 /* Accepts the strips since the last call (fg_reader_visit). */
 fg_status fg_session_advance(fg_context *ctx, fg_tiles *tiles, void *session);

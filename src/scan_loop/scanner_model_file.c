@@ -321,6 +321,10 @@ const char *fg_scanner_model_sha256(const fg_scanner_model *model) {
   return model->sha256;
 }
 
+bool fg_scanner_model_has_level(const fg_scanner_model *model) {
+  return model && model->tone.gauges;
+}
+
 bool fg_scanner_model_is_tied(const fg_scanner_model *model) {
   return model->tied;
 }

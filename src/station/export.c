@@ -212,7 +212,8 @@ static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **
   const fg_measure_options options = {.dpi = at->settings.dpi,
                                       .allow_lossy = at->settings.allow_lossy,
                                       .threads = 1,
-                                      .only_file = true};
+                                      .only_file = true,
+                                      .without_plain = !fg_scanner_model_has_level(at->model)};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   char date[11];

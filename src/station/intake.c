@@ -237,8 +237,10 @@ static fg_status measure_file(fg_context *ctx, intake *at) {
   FG_TRY(fg_order_of_scan(ctx, at->station, &at->order));
   at->by = fg_part_recipe_of(at->station, &at->order);
   const fg_lot_settings *settings = at->by.lot;
-  const fg_measure_options options = {
-      .dpi = settings->dpi, .allow_lossy = settings->allow_lossy, .only_file = true};
+  const fg_measure_options options = {.dpi = settings->dpi,
+                                      .allow_lossy = settings->allow_lossy,
+                                      .only_file = true,
+                                      .without_plain = !fg_scanner_model_has_level(at->by.model)};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);

@@ -79,8 +79,10 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_sto
   char *path = NULL, sum[65];
   fg_scanner_model *model = NULL;
   fg_measurement measurement;
-  const fg_measure_options options = {
-      .dpi = stored->settings.dpi, .allow_lossy = stored->settings.allow_lossy, .only_file = true};
+  const fg_measure_options options = {.dpi = stored->settings.dpi,
+                                      .allow_lossy = stored->settings.allow_lossy,
+                                      .only_file = true,
+                                      .without_plain = !stored->model};
   FG_TRY(fg_stored_name_path(ctx, folder, stored->path, &path));
   fg_status status = fg_sha256_file(ctx, path, sum);
   if (status == FG_OK && strcmp(sum, stored->sha256) != 0)

@@ -8,9 +8,9 @@ enum { BLOCK = 1024, TOGETHER = 4 };
 
 typedef double lane __attribute__((vector_size(32), aligned(8)));
 
-__attribute__((target_clones("avx2", "default"))) void
-fg_engine_add_dots(size_t n, const double *a, const double *v, size_t stride, size_t count,
-                   double *sums) {
+/* Clones are static: clang gives the symbol of an external one another name. */
+__attribute__((target_clones("avx2", "default"))) static void
+add_dots(size_t n, const double *a, const double *v, size_t stride, size_t count, double *sums) {
   size_t whole = n / 4 * 4;
   for (size_t k = 0; k < count; k += TOGETHER) {
     size_t here = count - k < TOGETHER ? count - k : TOGETHER;
@@ -30,6 +30,11 @@ fg_engine_add_dots(size_t n, const double *a, const double *v, size_t stride, si
       sums[k + m] += rest;
     }
   }
+}
+
+void fg_engine_add_dots(size_t n, const double *a, const double *v, size_t stride, size_t count,
+                        double *sums) {
+  add_dots(n, a, v, stride, count, sums);
 }
 
 __attribute__((target_clones("avx2", "default"))) static void

@@ -85,6 +85,7 @@ typedef struct fg_edge_work {
   bool unexplained;   /* no driver's model explains the profiles */
   bool plain;         /* counts are used as light, whatever the profiles show */
   bool fitted;        /* the segments are fitted: this work goes on from another's */
+  bool keeps_start;   /* `start` is wanted */
   struct fg_edge_work *start; /* this work before a driver was sought, where gamma was 1; or NULL */
   int round;                  /* number of the round of Gauss-Newton */
   bool again; /* second pass, stations are known: foreign pixels beside the strip are left out of

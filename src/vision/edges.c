@@ -199,6 +199,7 @@ static fg_edge_work begin_work(const fg_tiles *tiles, const fg_segmentation *seg
                         .reference = reference,
                         .threads = options->threads,
                         .linear = options->linear,
+                        .keeps_start = options->plain,
                         .width_px = trace->width_px,
                         .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MAX_PX),
                         .noise = 1,
@@ -279,13 +280,13 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   strip->facts = trace->facts;
   strip->picture = fg_picture_unknown();
   FG_TRY_EXIT(measure_edges(ctx, &work, &strip->facts));
-  strip->plain_mm = NAN;
-  if (work.gamma != 1 || work.driver) {
+  bool is_plain = work.gamma == 1 && !work.driver;
+  strip->plain_mm = strip->plain_blur_um = strip->plain_counts = NAN;
+  if (!is_plain && options->plain)
     FG_TRY_EXIT(fg_parallel_run(ctx, options->threads, 2, take_last_step, &steps));
-  } else {
+  else
     FG_TRY_EXIT(describe_strip(ctx, &work, dpi, strip));
-    copy_plain(&work, strip, dpi, strip);
-  }
+  if (is_plain) copy_plain(&work, strip, dpi, strip);
 exit:
   fg_reference_free(&reference);
   if (work.start) free_work(work.start);

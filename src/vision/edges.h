@@ -27,6 +27,7 @@ typedef struct fg_edge_options {
   const double *dpi; /* x and y */
   unsigned threads;  /* 0: all cores */
   bool linear;       /* counts are proportional to the light: no tone curve is fitted */
+  bool plain;        /* where a tone curve is found, measure with counts used as light as well */
 } fg_edge_options;
 
 /* Fills `strip` (zeroed by the caller; fg_strip_free it). The result does not depend on the

@@ -318,7 +318,8 @@ static fg_status find_driver(fg_context *ctx, fg_edge_work *work, bool *found) {
   const fg_edge_work before = *work;
   FG_TRY(fg_edges_find_driver(ctx, work, found));
   bool plain_differs = work->gamma != 1 || work->driver;
-  return before.gamma == 1 && plain_differs ? keep_start(ctx, &before, work) : FG_OK;
+  bool wanted = work->keeps_start && before.gamma == 1 && plain_differs;
+  return wanted ? keep_start(ctx, &before, work) : FG_OK;
 }
 
 static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {

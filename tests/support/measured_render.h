@@ -73,7 +73,7 @@ static inline void rendered_free(rendered *r) {
 static inline void measure_rows(measured *m) {
   fg_context *ctx = &m->ctx;
   rendered *r = &m->picture;
-  assert_ok(ctx, fg_session_create(ctx, &m->result, 1, &r->session));
+  assert_ok(ctx, fg_session_create(ctx, &m->result, 1, true, &r->session));
   assert_ok(ctx, fg_render_rows(ctx, r->spec, 0, rendered_row, r));
   assert_ok(ctx, fg_tiles_finish(ctx, &r->tiles));
   assert_ok(ctx, fg_session_advance(ctx, &r->tiles, r->session));

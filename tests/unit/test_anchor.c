@@ -82,7 +82,7 @@ static fg_measurement measure_bed(const sheet *bed, double dpi) {
   assert_ok(&ctx, fg_design_derive(&ctx, &m.design, &m.nominal));
   assert_ok(&ctx,
             fg_tiles_create(&ctx, bed->width, bed->height, bed->bits > 8 ? 2 : 1, NULL, &tiles));
-  assert_ok(&ctx, fg_session_create(&ctx, &m, 1, &session));
+  assert_ok(&ctx, fg_session_create(&ctx, &m, 1, true, &session));
   add_rows(&ctx, bed, session, &tiles);
   assert_ok(&ctx, fg_tiles_finish(&ctx, &tiles));
   assert_ok(&ctx, fg_session_advance(&ctx, &tiles, session));

@@ -134,11 +134,11 @@ static void an_unsharp_mask_is_measured(void **state) {
 }
 
 /* Draws a scan into a file and measures it. */
-static fg_measurement measure_drawn(const char *json, const fg_design *design) {
+static fg_measurement measure_drawn(const char *json, const fg_design *design, bool without_plain) {
   char path[] = "/tmp/foilgauge_driver_XXXXXX";
   fg_context ctx = {0};
   fg_render_spec *spec = NULL;
-  fg_measure_options options = {0};
+  fg_measure_options options = {.without_plain = without_plain};
   fg_measurement m;
   int file = mkstemp(path);
   assert_true(file >= 0);
@@ -171,7 +171,7 @@ static void discs_stay_round_and_right(void **state) {
              "{\"schema\":\"foilgauge/render/1\",\"seed\":7,\"discs\":[{\"centre_mm\":[3,3],"
              "\"radius_mm\":2}],\"scanner\":{\"dpi\":2400,\"noise\":1.2,\"blur_px\":1,%s%s%s}}",
              lights[i % 2], c->scanner, curve);
-    fg_measurement m = measure_drawn(json, &design);
+    fg_measurement m = measure_drawn(json, &design, false);
     assert_int_equal(m.disc_count, 1);
     const fg_disc *disc = &m.discs[0];
     double u = disc->blur_um * sqrt(2 * M_PI) * fmax(disc->picture.u_level, 0.002);
@@ -183,6 +183,32 @@ static void discs_stay_round_and_right(void **state) {
   }
 }
 
+/* Edges with counts used as light are left out where nothing follows that needs them; all other
+ * values stay. A gauge of the design needs them. */
+static void plain_values_are_left_out(void **state) {
+  (void)state;
+  char json[8192];
+  fg_design design;
+  fg_design_default(&design);
+  small_foil(json, sizeof json, 3, ",\"rotate_deg\":-73",
+             "\"dpi\":%d,\"noise\":1.2,\"blur_px\":1,%s,\"gamma\":2", COARSE, lights[0]);
+  fg_measurement with = measure_drawn(json, &design, false);
+  fg_measurement without = measure_drawn(json, &design, true);
+  design.gauge_count = 1;
+  design.gauges[0] = (fg_gauge){.kind = FG_GAUGE_LEAF, .width_mm = 1, .u_mm = 0.001};
+  fg_measurement gauged = measure_drawn(json, &design, true);
+  const fg_strip *a = &with.foils[0].strip, *b = &without.foils[0].strip;
+  assert_true(a->gamma > 1.5 && isfinite(a->plain_mm) && isfinite(a->plain_counts));
+  assert_true(isnan(b->plain_mm) && isnan(b->plain_counts));
+  assert_true(isfinite(gauged.foils[0].strip.plain_mm));
+  assert_true(b->thickness_mm == a->thickness_mm && b->gamma == a->gamma);
+  assert_true(without.foils[0].overall.radius_mm == with.foils[0].overall.radius_mm);
+  assert_true(without.foils[0].overall.covariance[2][2] == with.foils[0].overall.covariance[2][2]);
+  fg_measurement_free(&with);
+  fg_measurement_free(&without);
+  fg_measurement_free(&gauged);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sharpened_edges_stay_in_place),
@@ -191,6 +217,7 @@ int main(void) {
       cmocka_unit_test(plain_edges_are_plain),
       cmocka_unit_test(an_unsharp_mask_is_measured),
       cmocka_unit_test(discs_stay_round_and_right),
+      cmocka_unit_test(plain_values_are_left_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
