@@ -24,8 +24,8 @@ fg_margin fg_margin_to(double lower, double upper, double value) {
 }
 
 /* The lanes are sums of their own, so wider vectors give the same numbers. */
-__attribute__((target_clones("avx2", "default"))) double
-fg_dot_in_lanes(const double *a, const double *b, size_t count) {
+__attribute__((target_clones("avx2", "default"))) static double
+dot_in_lanes(const double *a, const double *b, size_t count) {
   enum { LANES = 8 };
   double sum[LANES] = {0};
   size_t i = 0;
@@ -35,4 +35,8 @@ fg_dot_in_lanes(const double *a, const double *b, size_t count) {
   for (; i < count; i++)
     sum[0] += a[i] * b[i];
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+double fg_dot_in_lanes(const double *a, const double *b, size_t count) {
+  return dot_in_lanes(a, b, count);
 }

@@ -386,8 +386,8 @@ static void put_limit_words(fg_scanner_change *change) {
   static const char *const words[] = {
       [FG_SCANNER_WITHIN] = "That is within the allowed %g µm.",
       [FG_SCANNER_BEYOND] = "That is more than the allowed %g µm.",
-      [FG_SCANNER_CANNOT_TELL] = "Whether that is within the allowed %g µm cannot be told: the "
-                                 "limit lies within U.",
+      [FG_SCANNER_CANNOT_TELL] = ("Whether that is within the allowed %g µm cannot be told: the "
+                                  "limit lies within U."),
   };
   size_t used = strlen(change->sentence);
   char limit[120];

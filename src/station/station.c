@@ -106,9 +106,11 @@ static fg_status write_digest(fg_context *ctx, const fg_station_request *request
   FILE *page = fg_stream_open(&digest->page, &digest->page_size);
   fg_status status = text && page ? fg_station_digest(ctx, request, text, page)
                                   : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest");
-  bool broken = !fg_stream_keep(text, &digest->text) | !fg_stream_keep(page, &digest->page);
-  return broken && status == FG_OK ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest")
-                                   : status;
+  bool has_text = fg_stream_keep(text, &digest->text);
+  bool has_page = fg_stream_keep(page, &digest->page);
+  return !(has_text && has_page) && status == FG_OK
+             ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a digest")
+             : status;
 }
 
 /* A line of the text is a text without markup. */

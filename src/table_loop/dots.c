@@ -8,7 +8,6 @@ enum { BLOCK = 1024, TOGETHER = 4 };
 
 typedef double lane __attribute__((vector_size(32), aligned(8)));
 
-/* Clones are static: clang gives the symbol of an external one another name. */
 __attribute__((target_clones("avx2", "default"))) static void
 add_dots(size_t n, const double *a, const double *v, size_t stride, size_t count, double *sums) {
   size_t whole = n / 4 * 4;

@@ -52,7 +52,7 @@ static fg_driven_profile driven_profile(const fg_edge_work *work, const fg_profi
     double count = fg_edges_count(work, fmax(shape->level[side], 1e-3), &rate);
     double step = shape->level[side] - shape->plateau;
     p.values[FG_DRIVEN_LEVEL_L + side] = count;
-    p.values[FG_DRIVEN_SLOPE_L + side] = shape->slope[side] * (step ? (count - plateau) / step : 1);
+    p.values[FG_DRIVEN_SLOPE_L + side] = shape->slope[side] * (step != 0 ? (count - plateau) / step : 1);
     p.values[FG_DRIVEN_BLUR_L + side] = shape->blur_px[side];
   }
   return p;

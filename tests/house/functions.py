@@ -36,6 +36,7 @@ TEST_DOORS = {
 }
 KIND = re.compile(r'FG_(?:FORM|FOIL|FOIL_KIND)_(?:CLASSICAL|SINUSOIDAL|ARC|CANTILEVER|DISCS)$|'
                   r'fg_(?:form|foil_kind)_has_bumps$')
+EXTERNAL_CLONE = re.compile(r'__attribute__\(\(target_clones\([^)]*\)\)\)\s+(?!static\b)')
 # A kind of foil is a row of these, or a file of its own.
 KIND_TABLES = (
     'include/foilgauge/design.h', 'src/geometry/foil_kind*', 'src/*/foil_kind*', 'src/report/measure/foil_view*',
@@ -133,6 +134,13 @@ def long_files(tree):
     for file in tree.c_files('src', 'include', 'tests'):
         if file.lines > LONG_FILE:
             yield Offence(file.path, 1, '%d lines: cut it' % file.lines)
+
+
+def external_clones(tree):
+    for file in tree.c_files('src'):
+        for clone in EXTERNAL_CLONE.finditer(file.text):
+            yield Offence(file.path, file.text.count('\n', 0, clone.start()) + 1,
+                          'clang does not link it: clone a static function, and call that')
 
 
 def long_functions(tree):

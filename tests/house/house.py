@@ -40,6 +40,7 @@ RULES = (
     Rule('short-file', 'files under 40 lines, together with the header or source beside them', functions.short_files),
     Rule('long-file', 'files above 500 lines', functions.long_files),
     Rule('long-function', 'functions above 60 lines', functions.long_functions),
+    Rule('external-clone', 'clones of a function for several processors that are not static', functions.external_clones),
     Rule('foil-kind', 'lines that tell kinds of foil apart outside their tables', functions.kind_mentions),
     Rule('literal-member', 'JSON members written by a call of their own, outside the rows of members', writers.literal_members),
     Rule('hand-table', 'tables of a page written by hand', writers.hand_tables),

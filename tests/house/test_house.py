@@ -39,6 +39,8 @@ ROOM = {
     'src/report/writer.c': 'static const char page[] = "<table>";\n/* fg_json_number(json, "said", 1); */\n'
                            '#define NUMBER\\\n  fg_json_number(json, "a_mm",\\\n                 a);\\\n  fg_json_string(&json, NULL, b);\\\n'
                            '  fg_json_object(json_of(x), "part");\n' + '\n' * 40,
+    'src/report/clones.c': '__attribute__((target_clones("avx2", "default"))) static void scale(void);\n'
+                           '__attribute__((target_clones("avx2", "default")))\nvoid fg_scale(void);\n' + '\n' * 40,
     'src/report/long.c': 'static const int rows[] = {1, 2};\nvoid fg_long(void) {\n' + '  fg_plain();\n' * 60 + '}\n'
                          '#define USE fg_long()\n',
 }
@@ -84,6 +86,9 @@ class Rules(unittest.TestCase):
         self.assertEqual(self.places(functions.short_files), [
             'src/core/add.c:1', 'src/core/add.h:1', 'src/core/take.c:1', 'src/core/take.h:1', 'src/scan/scan.h:1'])
         self.assertEqual(self.places(functions.long_files), ['src/report/page.c:1'])
+
+    def test_clones_that_clang_does_not_link_are_found(self):
+        self.assertEqual(self.places(functions.external_clones), ['src/report/clones.c:2'])
 
     def test_a_kind_of_foil_is_found_outside_its_tables(self):
         self.assertEqual(self.places(functions.kind_mentions), ['src/core/take.c:5'])
