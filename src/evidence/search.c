@@ -107,10 +107,6 @@ static bool holds_rival(const fg_evidence_model *model, const fg_evidence_option
   return false;
 }
 
-static bool bears_name(const fg_evidence_option *option) {
-  return option->effect && !fg_effect_is_unnamed(option->effect);
-}
-
 /* On few discs the own form of each is a rival: three of them, or two beside a field, would explain
  * what lost rows leave. */
 static size_t rivals_max(const fg_evidence_search *s) {
@@ -121,9 +117,10 @@ static size_t rivals_max(const fg_evidence_search *s) {
 static bool may_join(const fg_evidence_search *s, const fg_evidence_model *model,
                      const fg_evidence_option *option) {
   if (model->parts == FG_EVIDENCE_PARTS) return false;
-  if (!bears_name(option) && model->parts - model->named == rivals_max(s)) return false;
+  if (!fg_effect_bears_name(option->effect) && model->parts - model->named == rivals_max(s))
+    return false;
   if (option->rival) return !holds_rival(model, option);
-  if (bears_name(option) && model->named == NAMED_MAX) return false;
+  if (fg_effect_bears_name(option->effect) && model->named == NAMED_MAX) return false;
   if (option->effect->sought == FG_EFFECT_PLACED)
     return copies_of(model, option->effect) < COPIES_MAX;
   return !fg_evidence_holds(model, option->effect);
@@ -170,7 +167,7 @@ static void list_extensions(const fg_evidence_model *from, bool named, extending
   fg_evidence_search *s = e->search;
   for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
     const fg_evidence_option *option = &s->options[o];
-    if (!may_join(s, from, option) || (named && !bears_name(option))) continue;
+    if (!may_join(s, from, option) || (named && !fg_effect_bears_name(option->effect))) continue;
     e->list[e->count++] = (fg_evidence_extension){.option = option, .part = &s->store[s->stored++]};
   }
 }
@@ -216,7 +213,7 @@ static fg_status keep_extension(fg_context *ctx, fg_evidence_search *s,
   }
   model.evidence = one->evidence;
   model.part[model.parts++] = one->part;
-  model.named += bears_name(one->option);
+  model.named += fg_effect_bears_name(one->option->effect);
   set_score(s, &model);
   keep_model(s, &model);
   return FG_OK;
@@ -328,10 +325,9 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
 
 /* Fills a model without one of its parts. */
 static void leave_out(const fg_evidence_model *model, size_t k, fg_evidence_model *shorter) {
-  const fg_effect *effect = model->part[k]->effect;
   *shorter = *model;
   shorter->parts--;
-  shorter->named -= effect && !fg_effect_is_unnamed(effect);
+  shorter->named -= fg_effect_bears_name(model->part[k]->effect);
   memmove(shorter->part + k, shorter->part + k + 1, (shorter->parts - k) * sizeof *shorter->part);
 }
 

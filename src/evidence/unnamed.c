@@ -264,8 +264,8 @@ bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
   return !edge_fit->discs || !(effect->jumps || effect->columns == BAND_NUMBERS);
 }
 
-bool fg_effect_is_unnamed(const fg_effect *effect) {
+bool fg_effect_bears_name(const fg_effect *effect) {
   for (const fg_effect *one = fg_unnamed_effects; one->id; one++)
-    if (one == effect) return true;
-  return false;
+    if (one == effect) return false;
+  return effect != NULL;
 }

@@ -19,6 +19,7 @@ extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
 /* Returns false for broken lines on discs, which show a slope and a jump apart: both have names. */
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit);
 
-bool fg_effect_is_unnamed(const fg_effect *effect);
+/* False for one of those that nobody has named, and for NULL: a rival has no effect. */
+bool fg_effect_bears_name(const fg_effect *effect);
 
 #endif

@@ -188,22 +188,47 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_ran
   return FG_OK;
 }
 
+/* Returns true for the set about which the columns were taken: beside it they do not err. */
+static bool is_about(const fg_evidence_search *s, const fg_evidence_model *model) {
+  const fg_effect_set *about = s->request.seeds ? &s->request.seed[0] : NULL;
+  if (!about || about->count != model->parts) return false;
+  for (size_t k = 0; k < about->count; k++)
+    if (!fg_evidence_holds(model, about->effects[k].kind)) return false;
+  return true;
+}
+
+/* Moves from a set of named effects to the likeliest one that has more of them, where what that
+ * gains is no error of the columns. */
+static fg_status take_more(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model **best) {
+  const fg_evidence_model *from = *best;
+  double middle_mm[FG_EVIDENCE_PARTS];
+  for (size_t m = 0; from && s->models[m].score > from->score + FG_EVIDENCE_LEAD; m++) {
+    const fg_evidence_model *model = &s->models[m];
+    bool bears = fg_evidence_is_named(model) && fg_evidence_includes(model, from) &&
+                 (is_about(s, from) || is_about(s, model));
+    if (bears) FG_TRY(bears_names(ctx, s, model, middle_mm, &bears));
+    if (!bears) continue;
+    *best = model;
+    return FG_OK;
+  }
+  return FG_OK;
+}
+
 /* The score of the set of named effects alone whose numbers bear their names, of the fewest effects
  * within the margin of the best model: what more would gain is too little to be told from errors of
  * the columns; `far`: of the likeliest. -INFINITY: there is none. */
 static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, bool far, double margin,
                                  double *score) {
   double middle_mm[FG_EVIDENCE_PARTS], top = s->models[0].score;
-  size_t fewest = FG_EVIDENCE_PARTS + 1;
-  *score = -INFINITY;
+  const fg_evidence_model *best = NULL;
   for (size_t m = 0; m < s->count && s->models[m].score >= top - margin; m++) {
-    bool bears = false;
-    if (!fg_evidence_is_named(&s->models[m]) || s->models[m].parts >= fewest) continue;
-    FG_TRY(bears_names(ctx, s, &s->models[m], middle_mm, &bears));
-    if (!bears) continue;
-    *score = s->models[m].score;
-    fewest = far ? 0 : s->models[m].parts;
+    const fg_evidence_model *model = &s->models[m];
+    bool bears = fg_evidence_is_named(model) && (!best || (!far && model->parts < best->parts));
+    if (bears) FG_TRY(bears_names(ctx, s, model, middle_mm, &bears));
+    if (bears) best = model;
   }
+  if (!far) FG_TRY(take_more(ctx, s, &best));
+  *score = best ? best->score : -INFINITY;
   return FG_OK;
 }
 
@@ -287,7 +312,7 @@ static double find_best_without(const fg_evidence_search *s, const fg_effect *ef
 static bool holds_rival_over(const fg_evidence_model *model, int axis) {
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
-    bool unnamed = part->rival || fg_effect_is_unnamed(part->effect);
+    bool unnamed = !fg_effect_bears_name(part->effect);
     fg_effect_coordinate over = part->rival ? part->rival->coordinate : part->effect->coordinate;
     if (unnamed && over == (axis ? FG_EFFECT_Y : FG_EFFECT_X)) return true;
   }
@@ -301,7 +326,7 @@ static void find_certain(const fg_evidence_search *s, double margin, fg_evidence
   const fg_evidence_model *model = &v->tie[0];
   for (size_t k = 0; s->problem.edge_fit->discs && v->ties == 1 && k < model->parts; k++) {
     const fg_effect *effect = model->part[k]->effect;
-    v->certain[k] = effect && effect->jumps && !fg_effect_is_unnamed(effect) &&
+    v->certain[k] = fg_effect_bears_name(effect) && effect->jumps &&
                     !holds_rival_over(model, effect->axis) &&
                     find_best_without(s, effect) < model->score - margin;
   }

@@ -24,7 +24,7 @@ enum { LINEARISATIONS = 3 };
 
 /* Returns the effect that shows a part in reports: a rival's is its free curve. */
 static const fg_effect *shown_as(const fg_evidence_part *part) {
-  if (part->effect && !fg_effect_is_unnamed(part->effect)) return part->effect;
+  if (fg_effect_bears_name(part->effect)) return part->effect;
   return part->effect ? fg_rival_curve(part->effect->coordinate, part->effect->moves)
                       : fg_rival_curve(part->rival->coordinate, part->rival->moves);
 }

@@ -170,8 +170,9 @@ static void put_model(fg_evidence_search *s, fg_evidence_part *part, double scor
 
 enum { WRITTEN = 4 };
 
-/* The verdict on models of these scores, best first; the last of them is no cause. */
-static void decide_written_of(bool discs, const double score[WRITTEN],
+/* The verdict on models of these scores, best first; the last of them is no cause. The columns were
+ * taken about one effect, `about`, or none. */
+static void decide_written_of(bool discs, const char *about, const double score[WRITTEN],
                               const char *const names[WRITTEN], fg_evidence_verdict *v) {
   fg_context ctx = {0};
   foil_rows f;
@@ -179,7 +180,9 @@ static void decide_written_of(bool discs, const double score[WRITTEN],
   static fg_evidence_part part[24];
   foil_rows_open(&f);
   foil_rows_put_noise(&f, NOISE_UM);
-  const fg_evidence_request request = {.prior = {1, 1}};
+  fg_effect_set set = {.count = about != NULL};
+  if (about) set.effects[0].kind = fg_effect_find(about);
+  const fg_evidence_request request = {.prior = {1, 1}, .seed = &set, .seeds = 1};
   assert_ok(&ctx,
             fg_evidence_search_open(&ctx, &f.edge_fit, &request, f.residual_um, f.jacobian, &s));
   memset(part, 0, sizeof part);
@@ -194,7 +197,7 @@ static void decide_written_of(bool discs, const double score[WRITTEN],
 
 static void decide_written(const double score[WRITTEN], const char *const names[WRITTEN],
                            fg_evidence_verdict *v) {
-  decide_written_of(false, score, names, v);
+  decide_written_of(false, NULL, score, names, v);
 }
 
 static void a_name_beside_what_has_none_must_gain_more_than_the_columns_err(void **state) {
@@ -224,10 +227,24 @@ static void a_jump_stays_beside_fields_where_none_does_without_it(void **state) 
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     fg_evidence_verdict v;
     const char *const names[] = {cases[k].best, "scan.y.dx", "scan.x.dy", ""};
-    decide_written_of(cases[k].discs, (double[]){200, cases[k].without, 100, 0}, names, &v);
+    decide_written_of(cases[k].discs, NULL, (double[]){200, cases[k].without, 100, 0}, names, &v);
     assert_int_equal(v.outcome, FG_EVIDENCE_UNATTRIBUTED);
     if (v.certain[1] != cases[k].certain) fail_msg("case %zu", k);
   }
+}
+
+/* On sharp edges columns err by more than a small cause gains, but not beside the cause that they
+ * were taken about. */
+static void a_small_cause_is_told_beside_a_large_one(void **state) {
+  (void)state;
+  fg_evidence_verdict v;
+  static const char *const names[] = {"part.bump_skew part.bump_crown", "part.bump_skew",
+                                      "scan.x.dx", ""};
+  static const double score[] = {1e6, 1e6 - 20, 1e5, 0};
+  decide_written_of(false, "part.bump_skew", score, names, &v);
+  assert_true(v.outcome == FG_EVIDENCE_FOUND && v.ties == 1 && v.tie[0].parts == 2);
+  decide_written_of(false, "scan.shear", score, names, &v);
+  assert_true(v.outcome == FG_EVIDENCE_FOUND && v.ties == 1 && v.tie[0].parts == 1);
 }
 
 /* Of two explanations of discs by the same effects, the one with fewer of them stays. */
@@ -236,7 +253,7 @@ static void one_step_is_told_before_two(void **state) {
   fg_evidence_verdict v;
   static const char *const names[] = {"scan.row_step scan.row_step", "scan.row_step", "scan.xy",
                                       ""};
-  decide_written_of(true, (double[]){1e3, 998, 800, 0}, names, &v);
+  decide_written_of(true, NULL, (double[]){1e3, 998, 800, 0}, names, &v);
   assert_int_equal(v.outcome, FG_EVIDENCE_FOUND);
   assert_true(v.ties == 1 && v.tie[0].parts == 1);
 }
@@ -302,6 +319,7 @@ int main(void) {
       cmocka_unit_test(a_name_beside_what_has_none_must_gain_more_than_the_columns_err),
       cmocka_unit_test(a_jump_stays_beside_fields_where_none_does_without_it),
       cmocka_unit_test(one_step_is_told_before_two),
+      cmocka_unit_test(a_small_cause_is_told_beside_a_large_one),
       cmocka_unit_test(three_named_causes_at_once_are_tied),
       cmocka_unit_test(what_edges_do_not_show_is_bounded_by_them),
       cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
