@@ -118,6 +118,14 @@ static fg_status fail_two_foils(fg_context *ctx, const fg_scan_loop *loop, const
                  one ? one->radius_mm : NAN, one ? other->radius_mm : NAN);
 }
 
+/* Returns true where a geometry for each scan leaves nothing to explain: nothing beyond the noise,
+ * or beyond the edge model's own error. */
+static bool explains_all(const fg_scan_loop *loop, const apart *a) {
+  double error2 = loop->edge_error_um * loop->edge_error_um;
+  if (has_curve(&a->set) || a->set.count > EFFECTS_MAX) return false;
+  return a->explanations.right || mean_square(&a->edge_fit, a->residual_um) <= error2;
+}
+
 fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop) {
   apart a = {0};
   size_t views = 0;
@@ -128,8 +136,7 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
   fg_status status = set_apart(ctx, &loop->edge_fit, &a);
   bool told = status == FG_OK;
   if (status != FG_ERR_MEMORY) status = FG_OK; /* too few rows for a geometry each: no conclusion */
-  if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MAX &&
-      preference(loop, &a) > PREFERENCE_MIN)
+  if (told && explains_all(loop, &a) && preference(loop, &a) > PREFERENCE_MIN)
     status = fail_two_foils(ctx, loop, &a);
   fg_edge_fit_free(&a.edge_fit);
   free(a.residual_um);
