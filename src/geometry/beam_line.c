@@ -33,6 +33,12 @@ static double place_across(const fg_beam_line *line, fg_point p) {
   return line->along.y * (p.x - line->at.x) - line->along.x * (p.y - line->at.y);
 }
 
+static double step_of(const fg_beam_line *line) {
+  size_t n = line->edge->count;
+  fg_point a = station_at(line, 0)->at, b = station_at(line, n - 1)->at;
+  return hypot(b.x - a.x, b.y - a.y) / (double)(n - 1);
+}
+
 static void fit_once(fg_beam_line *line) {
   double n = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
   fg_point o = station_at(line, 0)->at;
@@ -274,6 +280,11 @@ static double shape_variance(const fg_beam_line *line) {
   return more * squares / (n * n);
 }
 
+/* Stations that are shorter than those of the long edges have fewer pixels, and scatter more. */
+static double shortness(const fg_beam_line *line, const fg_beam_noise *noise) {
+  return fmax(1, noise->step_mm / step_of(line));
+}
+
 fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
                                 const fg_beam_noise *noise, fg_beam_property ask, double along_mm,
                                 double *variance) {
@@ -284,7 +295,8 @@ fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
   for (size_t i = 0; i < line->edge->count; i++)
     weights[i] = weight_of(&a, i, ask, along_mm);
   bool good = !line->edge->round || weigh_apex(line, weights);
-  double by_noise = SHAPE_VARIANCE * sum_covariance(weights, line->edge->count, noise);
+  double by_noise =
+      SHAPE_VARIANCE * shortness(line, noise) * sum_covariance(weights, line->edge->count, noise);
   if (ask == FG_BEAM_PLACE) by_noise += shape_variance(line);
   *variance = good ? (1 + line->edge->loss_share) * line->spread * by_noise : NAN;
   free(weights);
@@ -376,12 +388,6 @@ static void correct_for_dof(double stations, fg_beam_noise *noise) {
   double student = gsl_cdf_tdist_Pinv(0.975, dof) / 1.959964;
   for (size_t lag = 0; lag < noise->lags; lag++)
     noise->covariance[lag] *= fmin(count / dof, MADE_UP_MAX) * student * student;
-}
-
-static double step_of(const fg_beam_line *line) {
-  size_t n = line->edge->count;
-  fg_point a = station_at(line, 0)->at, b = station_at(line, n - 1)->at;
-  return hypot(b.x - a.x, b.y - a.y) / (double)(n - 1);
 }
 
 fg_status fg_beam_noise_find(fg_context *ctx, const fg_beam_line *left, const fg_beam_line *right,

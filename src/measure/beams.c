@@ -49,8 +49,8 @@ typedef struct flat_work {
   double bent_gamma; /* exponent shown by the edges where the tone is stated as linear; 1: they
                         agree */
   fg_beam *beams;    /* one per place */
-  int *driven;       /* long edges per place that show a driver's model */
-  bool plain;        /* no driver is sought at any edge */
+  fg_found_driver *drivers;      /* of the long edges, two per place */
+  const fg_found_driver *common; /* of all edges; NULL: each long edge shows its own */
 } flat_work;
 
 static double min_px(const fg_measurement *m, const fg_pixel_shape *shape) {
@@ -141,7 +141,7 @@ static fg_status copy_edge(fg_context *ctx, const flat_work *w, const fg_stretch
                                         .u_split = (double)s->u_split_px * mm,
                                         .used = s->weight > 0};
   }
-  edge->round = isfinite(side->radius);
+  edge->round = !fg_line_end_is_flat(side);
   edge->radius_mm = edge->round ? side->radius * mm : 0;
   edge->blur_mm = found->blur_px * mm;
   edge->row_mm = w->view.shape.scale[1] * mm;
@@ -220,15 +220,16 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
 /* Measures tip and floor, which are short, with the driver of a long edge, so that its error
  * cancels between them. */
 static fg_status measure_sides(fg_context *ctx, const flat_work *w, const fg_beam_place *place,
-                               fg_beam *beam, int *driven) {
+                               fg_beam *beam, fg_found_driver drivers[2]) {
   fg_line_found found;
-  fg_found_driver driver = {.found = false};
+  fg_found_driver driver = w->common ? *w->common : (fg_found_driver){.found = false};
   for (int side = 0; side < FG_BEAM_SIDES; side++) {
     if (!place->there[side]) continue;
-    const fg_found_driver *known = w->plain || side >= FG_BEAM_TIP ? &driver : NULL;
+    const fg_found_driver *known = w->common || side >= FG_BEAM_TIP ? &driver : NULL;
     FG_TRY(measure_edge(ctx, w, &place->sides[side], known, &found, beam, &beam->edges[side]));
-    if (side < FG_BEAM_TIP) *driven += found.driver.found;
-    if (side < FG_BEAM_TIP && !driver.found) driver = found.driver;
+    if (side >= FG_BEAM_TIP) continue;
+    drivers[side] = found.driver;
+    if (!driver.found) driver = found.driver;
   }
   return FG_OK;
 }
@@ -258,7 +259,7 @@ static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
       atan2(beam->tip_mm.y - beam->root_mm.y, beam->tip_mm.x - beam->root_mm.x) * 180 / M_PI;
   beam->picture = fg_picture_unknown();
   if (is_at_border(w, place)) beam->flags |= FG_BEAM_TOUCHES_BORDER;
-  return measure_sides(ctx, w, place, beam, &w->driven[i]);
+  return measure_sides(ctx, w, place, beam, w->drivers + 2 * i);
 }
 
 static fg_status make_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part *part) {
@@ -309,24 +310,46 @@ static void find_common_tone(flat_work *w, size_t count) {
   w->tone.u_found = shown.u_found;
 }
 
+static bool is_masked(const fg_found_driver *driver) {
+  return driver->found && driver->driver.values[FG_DRIVER_AMOUNT] != 0;
+}
+
+/* A driver affects all edges. Deviations of half of them or less are their own roughness. A tone
+ * curve with an unsharp mask can imitate a sharper edge without either, so where half of the edges
+ * or less have a mask, none has: all take the model without one that tells the edge's place best,
+ * if most of the others have one. False: every edge keeps its own. */
+static bool find_common_driver(const flat_work *w, size_t count, fg_found_driver *common) {
+  size_t driven = 0, masked = 0;
+  *common = (fg_found_driver){.found = false};
+  for (size_t i = 0; i < count; i++) {
+    const fg_found_driver *driver = &w->drivers[i];
+    driven += driver->found;
+    masked += is_masked(driver);
+    bool better = !common->found || driver->u_edge_px < common->u_edge_px;
+    if (driver->found && !is_masked(driver) && better) *common = *driver;
+  }
+  if (!driven || (2 * driven > count && (!masked || 2 * masked > count))) return false;
+  if (2 * (driven - masked) <= count - masked) *common = (fg_found_driver){.found = false};
+  return true;
+}
+
 static fg_status measure_places(fg_context *ctx, flat_work *w, unsigned threads) {
   size_t count = w->places.count;
+  fg_found_driver common;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->beams, (void **)&w->beams));
   FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *w->tones, (void **)&w->tones));
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->driven, (void **)&w->driven));
+  FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *w->drivers, (void **)&w->drivers));
   FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
   find_common_tone(w, 2 * count);
   FG_TRY(fg_parallel_run(ctx, threads, count, measure_edges, w));
-  int driven = 0;
-  for (size_t i = 0; i < count; i++)
-    driven += w->driven[i];
-  if (driven == 0 || (size_t)driven > count) return FG_OK;
-  /* A driver affects all edges: deviations of half of them or less are their own roughness. */
-  w->plain = true;
+  if (!find_common_driver(w, 2 * count, &common)) return FG_OK;
+  w->common = &common;
   for (size_t i = 0; i < count; i++)
     fg_beam_free(&w->beams[i]);
   memset(w->beams, 0, count * sizeof *w->beams);
-  return fg_parallel_run(ctx, threads, count, measure_edges, w);
+  fg_status status = fg_parallel_run(ctx, threads, count, measure_edges, w);
+  w->common = NULL;
+  return status;
 }
 
 static void free_work(flat_work *w) {
@@ -340,7 +363,7 @@ static void free_work(flat_work *w) {
   free(w->place_rim);
   free(w->tones);
   free(w->beams);
-  free(w->driven);
+  free(w->drivers);
 }
 
 fg_status fg_flat_island_measure(fg_context *ctx, const fg_flat_island *island,

@@ -15,8 +15,10 @@ enum { SECTORS_MAX = 24, SECTORS_WANTED = 10, STATIONS_MIN = 4, PLACES = 9 };
 #define SECTOR_PX     96.0
 #define SECTOR_MIN_PX 24.0
 #define STATION_PX    1.5
-#define REACH_PX      15.0 /* of the band, on either side */
-#define REACH_MIN     2.5
+/* Min length of the stations of a stretch that is too short for STATIONS_MIN long ones. */
+#define STATION_MIN_PX 1.0
+#define REACH_PX       15.0 /* of the band, on either side */
+#define REACH_MIN      2.5
 /* End of the band before the next edge, as a share of its distance. */
 #define NEXT_EDGE_SHARE 0.45
 /* End of an arc's band, as a share of its radius. */
@@ -263,20 +265,24 @@ static size_t count_sectors(double length) {
   return (size_t)fmin(fmax(fmax(length / SECTOR_PX, wanted), 1), SECTORS_MAX);
 }
 
+static size_t count_stations(double length, size_t sectors) {
+  size_t per_sector = (size_t)(length / STATION_PX / (double)sectors);
+  return sectors * (sectors > 1 || per_sector > STATIONS_MIN ? per_sector : STATIONS_MIN);
+}
+
 /* Collects the band with its profiles, and fits a step without slopes to each. */
 static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, const fg_round_end *end,
                            double middle, fg_disc_work *work, double *next_px) {
   frame f = frame_of(stretch);
   f.end = end;
   fg_ring *ring = &work->ring;
-  if (!(f.length >= STATIONS_MIN * STATION_PX))
+  if (!(f.length >= STATIONS_MIN * STATION_MIN_PX))
     return fg_fail(ctx, FG_ERR_NUMERIC, "a side is too short");
   work->open = true;
   ring->circle.radius = stretch->radius;
   ring->reach_px = find_reach(work, &f, middle, next_px);
   ring->sector_count = count_sectors(f.length);
-  size_t per_sector = (size_t)(f.length / STATION_PX / (double)ring->sector_count);
-  ring->station_count = per_sector * ring->sector_count;
+  ring->station_count = count_stations(f.length, ring->sector_count);
   FG_TRY(collect_band(ctx, work, &f));
   FG_TRY(fg_disc_stack_sectors(ctx, work));
   const unsigned held = 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT;

@@ -14,4 +14,7 @@
 fg_status fg_line_end_measure(fg_context *ctx, const fg_line_view *view, const fg_line_tone *tone,
                               fg_stretch *stretch, fg_line_found *found);
 
+/* Returns true for a straight stretch, and for a cut's end in which no circle is seen. */
+bool fg_line_end_is_flat(const fg_stretch *stretch);
+
 #endif
