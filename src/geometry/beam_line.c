@@ -36,7 +36,9 @@ static double place_across(const fg_beam_line *line, fg_point p) {
 static double step_of(const fg_beam_line *line) {
   size_t n = line->edge->count;
   fg_point a = station_at(line, 0)->at, b = station_at(line, n - 1)->at;
-  return hypot(b.x - a.x, b.y - a.y) / (double)(n - 1);
+  double size = hypot(b.x - a.x, b.y - a.y), twice = 2 * line->edge->radius_mm;
+  if (line->edge->round) size = twice * asin(fmin(1, size / twice));
+  return size / (double)(n - 1);
 }
 
 static void fit_once(fg_beam_line *line) {

@@ -65,15 +65,16 @@ static fg_stretch start_of(const cut *c) {
   double r = c->half_width, sine = FG_END_SHARE, off = r - 0.4;
   fg_point d = towards_material(c), along = {d.y, -d.x};
   fg_point centre = {c->apex.x - off * d.x, c->apex.y - off * d.y};
-  double forward = r * sqrt(1 - sine * sine), aside = r * sine;
-  return (fg_stretch){
-      {centre.x + forward * d.x - aside * along.x, centre.y + forward * d.y - aside * along.y},
-      {centre.x + forward * d.x + aside * along.x, centre.y + forward * d.y + aside * along.y},
-      r,
-      r};
+  double forward = r * sqrt(1 - sine * sine), sideways = r * sine;
+  return (fg_stretch){{centre.x + forward * d.x - sideways * along.x,
+                       centre.y + forward * d.y - sideways * along.y},
+                      {centre.x + forward * d.x + sideways * along.x,
+                       centre.y + forward * d.y + sideways * along.y},
+                      r,
+                      r};
 }
 
-/* How far the stations' middle lies beyond the true apex, in the material. */
+/* Mean distance of the stations beyond the true end, in the material. */
 static double apex_error(const cut *c, const fg_stretch *s, const fg_disc_edge *edge) {
   fg_point d = towards_material(c);
   double sum = 0, used = 0;
