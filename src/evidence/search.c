@@ -68,17 +68,34 @@ static fg_status evaluate(fg_context *ctx, fg_evidence_search *s, fg_evidence_mo
   return FG_OK;
 }
 
-/* Finds the scatter of the bumps at which the model is likeliest. */
+/* A model at each of the sizes that its scatter may have. */
+typedef struct scatter_trials {
+  fg_evidence_search *search;
+  fg_evidence_model model[SCATTERS_TRIED];
+} scatter_trials;
+
+static fg_status evaluate_trial(fg_context *ctx, void *shared, size_t item) {
+  scatter_trials *trials = shared;
+  return evaluate(ctx, trials->search, &trials->model[item]);
+}
+
+/* Finds the scatter of the bumps at which the model is likeliest. Its products are known after the
+ * first evaluation, so threads may share the others, where these take longer than a thread's start.
+ */
 static fg_status find_scatter(fg_context *ctx, fg_evidence_search *s, fg_evidence_model *model) {
+  enum { MANY = 80 };
+  unsigned threads = s->scatter.count < MANY ? 1 : s->request.threads;
   fg_evidence_model best = *model;
   FG_TRY(evaluate(ctx, s, &best));
   for (int which = 0; s->scatter.count && which < FG_EVIDENCE_SCATTERS; which++) {
-    fg_evidence_model tried = best;
+    scatter_trials trials = {.search = s};
     for (int i = 0; i < SCATTERS_TRIED; i++) {
-      tried.scatter_um[which] = scatter_um(s, which, i);
-      FG_TRY(evaluate(ctx, s, &tried));
-      if (tried.evidence > best.evidence) best = tried;
+      trials.model[i] = best;
+      trials.model[i].scatter_um[which] = scatter_um(s, which, i);
     }
+    FG_TRY(fg_parallel_run(ctx, threads, SCATTERS_TRIED, evaluate_trial, &trials));
+    for (int i = 0; i < SCATTERS_TRIED; i++)
+      if (trials.model[i].evidence > best.evidence) best = trials.model[i];
   }
   *model = best;
   return FG_OK;
