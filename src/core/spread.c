@@ -29,19 +29,22 @@ double fg_median(double *values, size_t count) {
   return low + 0.5 * (high - low);
 }
 
+double fg_upper_median(double *values, size_t count) {
+  return count ? fg_select(values, count, count / 2) : NAN;
+}
+
 fg_spread fg_spread_of(double *sizes, size_t count) {
   if (!count) return (fg_spread){NAN, NAN, NAN};
   size_t last = count - 1;
-  double low = fg_select(sizes, count, last / 2), high = fg_select(sizes, count, count / 2);
-  return (fg_spread){.robust_sd = FG_SD_PER_MEDIAN * (low + high) / 2,
+  return (fg_spread){.robust_sd = FG_SD_PER_MEDIAN * fg_median(sizes, count),
                      .p95 = fg_select(sizes, count, last * 95 / 100),
                      .maximum = fg_select(sizes, count, last)};
 }
 
 double fg_robust_sd(double *sizes, size_t count) {
-  return count ? FG_SD_PER_MEDIAN * fg_select(sizes, count, count / 2) : NAN;
+  return FG_SD_PER_MEDIAN * fg_upper_median(sizes, count);
 }
 
 double fg_spread_limit(double *sizes, size_t count, double deviations) {
-  return count ? deviations * FG_SD_PER_MEDIAN * fg_select(sizes, count, count / 2) : INFINITY;
+  return count ? deviations * fg_robust_sd(sizes, count) : INFINITY;
 }

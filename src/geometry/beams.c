@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/spread.h"
 #include "geometry/beam_line.h"
 #include "geometry/beam_numbers.h"
 #include "geometry/beam_rows.h"
@@ -324,11 +324,11 @@ static void fill_foil_noise(fg_foil *foil, const fg_beam_noise *noises, double *
   for (size_t i = 0; i < foil->beam_count; i++)
     if (noises[i].lags) scratch[n++] = 1000 * sqrt(noises[i].covariance[0]);
   if (!n) return;
-  foil->noise_um = fg_select(scratch, n, n / 2);
+  foil->noise_um = fg_upper_median(scratch, n);
   n = 0;
   for (size_t i = 0; i < foil->beam_count; i++)
     if (noises[i].lags) scratch[n++] = fg_beam_noise_length(&noises[i]) / noises[i].step_mm;
-  double steps = fg_select(scratch, n, n / 2), step = 0;
+  double steps = fg_upper_median(scratch, n), step = 0;
   for (size_t i = 0; i < foil->beam_count; i++)
     if (noises[i].lags) step = noises[i].step_mm;
   foil->correlation_mm = steps * step;
@@ -342,7 +342,7 @@ static double median_ratio(const fg_foil *foil, size_t offset, double design, do
     memcpy(&value, (const char *)&foil->beams[i] + offset, sizeof value);
     if (isfinite(value)) scratch[n++] = value / design;
   }
-  return n ? fg_select(scratch, n, n / 2) : NAN;
+  return fg_upper_median(scratch, n);
 }
 
 /* Detects beams of the design's shape in another size: the scan's resolution must be wrong. */
@@ -373,10 +373,10 @@ static void flag_leaning(double *scratch, fg_foil *foil) {
   if (count < PARALLEL_MIN || isnan(foil->rotation_deg)) return;
   for (size_t i = 0; i < count; i++)
     scratch[i] = remainder(beams[i].direction_deg - beams[0].direction_deg, 360);
-  double direction = beams[0].direction_deg + fg_select(scratch, count, count / 2);
+  double direction = beams[0].direction_deg + fg_upper_median(scratch, count);
   for (size_t i = 0; i < count; i++)
     scratch[i] = direction_off(&beams[i], direction);
-  if (fg_select(scratch, count, count / 2) > PARALLEL_DEG) return;
+  if (fg_upper_median(scratch, count) > PARALLEL_DEG) return;
   for (size_t i = 0; i < count; i++)
     if (direction_off(&beams[i], direction) > LEANING_DEG) foil->beams[i].flags |= FG_BEAM_BENT;
 }

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
 #include "core/small_solve.h"
 #include "core/spread.h"
 
@@ -36,10 +35,6 @@ typedef struct fit_work {
   fg_circle_fit fit;
 } fit_work;
 
-static double median_of_values(double *values, size_t n) {
-  return n ? fg_select(values, n, n / 2) : NAN;
-}
-
 static void find_residuals(fit_work *w) {
   const fg_circle *c = &w->fit.circle;
   for (size_t i = 0; i < w->count; i++)
@@ -59,7 +54,7 @@ static void weigh_stations(fit_work *w, double scatter) {
   size_t n = 0;
   for (size_t i = 0; i < w->count; i++)
     if (w->points[i].used) w->scratch[n++] = w->points[i].u * w->points[i].u;
-  double noise = median_of_values(w->scratch, n), rough = fmax(0, scatter * scatter - noise),
+  double noise = fg_upper_median(w->scratch, n), rough = fmax(0, scatter * scatter - noise),
          sum = 0;
   for (size_t i = 0; i < w->count; i++) {
     double u = w->points[i].u;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/spread.h"
 
 enum { STRETCHES = 8 };
 
@@ -25,7 +25,7 @@ static double error_of_mean(double *widths, size_t count) {
   double medians[STRETCHES], mean = 0, squares = 0;
   for (size_t i = 0; i < STRETCHES; i++) {
     size_t first = i * count / STRETCHES, last = (i + 1) * count / STRETCHES;
-    medians[i] = fg_select(widths + first, last - first, (last - first) / 2);
+    medians[i] = fg_upper_median(widths + first, last - first);
     mean += medians[i] / STRETCHES;
   }
   for (size_t i = 0; i < STRETCHES; i++)
@@ -40,7 +40,7 @@ fg_status fg_strip_measure_thickness(fg_context *ctx, fg_strip *strip) {
   for (size_t i = 0; i < strip->count; i++)
     if (strip->stations[i].weight > 0) widths[n++] = width_at(&strip->stations[i]);
   strip->u_thickness_mm = n >= 2 * STRETCHES ? error_of_mean(widths, n) : NAN;
-  strip->thickness_mm = n ? fg_select(widths, n, n / 2) : NAN;
+  strip->thickness_mm = fg_upper_median(widths, n);
   free(widths);
   return FG_OK;
 }

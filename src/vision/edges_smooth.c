@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
 #include "core/small_solve.h"
+#include "core/spread.h"
 #include "vision/shape_curve.h"
 
 enum { BASIS_MAX = 7 };
@@ -46,10 +46,6 @@ static double evaluate_curve(const strip_curve *c, const double *basis) {
   for (size_t b = 0; b < c->unknowns; b++)
     sum += c->coefficients[b] * basis[b];
   return sum;
-}
-
-static double median_in_place(double *values, size_t count) {
-  return count ? fg_select(values, count, count / 2) : NAN;
 }
 
 /* Fits the curve to the segments within `limit` of the present one. The real share of the scatter
@@ -137,7 +133,7 @@ static double median_of(const fg_edge_work *work, double *scratch,
   size_t n = 0;
   for (size_t s = 0; s < work->segment_count; s++)
     if (work->segments[s].fit.good) scratch[n++] = get(&work->segments[s].fit);
-  return median_in_place(scratch, n);
+  return fg_upper_median(scratch, n);
 }
 
 static double get_left(const fg_profile_fit *fit) {

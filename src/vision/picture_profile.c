@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "core/select.h"
+#include "core/spread.h"
 
 enum { BINS_MAX = 256 };
 /* Min contrast of an edge, counts. */
@@ -36,7 +36,7 @@ static double level_between(const fg_profile_source *s, double from, double to) 
     double at = distance_outwards(s, &s->bins[i]);
     if (s->bins[i].count > 0 && at >= from && at <= to) values[n++] = s->bins[i].value;
   }
-  return n ? fg_select(values, n, n / 2) : NAN;
+  return fg_upper_median(values, n);
 }
 
 /* Returns the first crossing of the middle of the profile's levels, outwards. */
