@@ -90,7 +90,7 @@ static bool is_complete_arc(const fg_layout *layout, size_t i, double angle_deg)
   if (!layout->fitted[i]) return false;
   const fg_arc *arc = &layout->bumps[i];
   const fg_strip *strip = layout->line.strip;
-  const fg_stretch *turns = &layout->turning.bumps[i];
+  const fg_turn *turns = &layout->turning.bumps[i];
   fg_range r = arc->ranges[0];
   if (turns->first == 0 || turns->last + 1 >= strip->count) return false;
   size_t a = r.first, b = r.last;

@@ -115,7 +115,7 @@ static void regrow_lands(fg_layout *layout) {
 /* Checks an arc's ends. The line's direction turns where a bump's arc meets its fillet: an end that
  * was found far from there (a rough edge left the circle early, or stayed near it too long) is put
  * a little inside of it. */
-static void check_ends(const fg_layout *layout, const fg_stretch *turns, fg_range *range) {
+static void check_ends(const fg_layout *layout, const fg_turn *turns, fg_range *range) {
   double step = layout->line.strip->step_mm;
   long inside = lround(END_INSIDE_MM / step), early = lround(END_EARLY_MM / step);
   long late = lround(END_LATE_MM / step);
@@ -130,7 +130,7 @@ static void check_ends(const fg_layout *layout, const fg_stretch *turns, fg_rang
 static fg_status fit_bump(fg_context *ctx, void *shared, size_t i) {
   fg_layout *layout = shared;
   fg_arc *arc = &layout->bumps[i];
-  const fg_stretch *s = &layout->turning.bumps[i];
+  const fg_turn *s = &layout->turning.bumps[i];
   fg_range bounds = {s->first, s->last};
   size_t wide = (s->last - s->first) / 8;
   bounds.first = bounds.first > wide ? bounds.first - wide : 0;

@@ -41,8 +41,8 @@ static void find_directions(const fg_strip *strip, double *direction) {
   }
 }
 
-/* Cuts the strip at the turning points of the direction. Returns the number of stretches. */
-static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_stretch *out) {
+/* Cuts the strip at the turning points of the direction. Returns the number of turns. */
+static size_t cut_turns(const fg_strip *strip, const double *direction, fg_turn *out) {
   size_t count = 0, from = 0, low = 0, high = 0;
   int rising = 0;
   for (size_t i = 1; i <= strip->count && count < STRETCHES_MAX - 1; i++) {
@@ -67,30 +67,29 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
     }
     if (fabs(direction[cut] - direction[from]) < PROMINENCE_RAD) continue;
     if (cut > from)
-      out[count++] =
-          (fg_stretch){.first = from,
-                       .last = cut,
-                       .turn_rad = direction[cut] - direction[from],
-                       .length_mm = strip->stations[cut].s_mm - strip->stations[from].s_mm};
+      out[count++] = (fg_turn){.first = from,
+                               .last = cut,
+                               .turn_rad = direction[cut] - direction[from],
+                               .length_mm = strip->stations[cut].s_mm - strip->stations[from].s_mm};
     from = cut;
   }
   return count;
 }
 
-/* Lower median over the stretches that turn with `sign`, the two at the ends left out when there
+/* Lower median over the turns that turn with `sign`, the two at the ends left out when there
  * are others. 0 when there are none. */
-static double median_over(const fg_stretch *stretches, size_t count, double sign,
-                          double (*get)(const fg_stretch *)) {
+static double median_over(const fg_turn *turns, size_t count, double sign,
+                          double (*get)(const fg_turn *)) {
   double values[STRETCHES_MAX];
   size_t n = 0, skip = count > 2 ? 1 : 0;
   for (size_t i = skip; i + skip < count; i++)
-    if (stretches[i].turn_rad * sign > PROMINENCE_RAD) values[n++] = get(&stretches[i]);
+    if (turns[i].turn_rad * sign > PROMINENCE_RAD) values[n++] = get(&turns[i]);
   return n ? fg_select(values, n, (n - 1) / 2) : 0;
 }
 
-/* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
+/* The turn's own tight part: a lip's straight leg and land belong to its turn too, so the
  * radius of the bend is judged where 80 % of the turn happens. */
-static fg_stretch tight_part(const fg_strip *strip, const double *direction, const fg_stretch *s) {
+static fg_turn tight_part(const fg_strip *strip, const double *direction, const fg_turn *s) {
   size_t a = s->first, b = s->last;
   double from = direction[a] + 0.1 * s->turn_rad, to = direction[a] + 0.9 * s->turn_rad;
   double sign = s->turn_rad > 0 ? 1 : -1;
@@ -98,23 +97,23 @@ static fg_stretch tight_part(const fg_strip *strip, const double *direction, con
     a++;
   while (b > a && sign * (direction[b] - to) > 0)
     b--;
-  return (fg_stretch){.first = a,
-                      .last = b,
-                      .turn_rad = 0.8 * s->turn_rad,
-                      .length_mm = strip->stations[b].s_mm - strip->stations[a].s_mm};
+  return (fg_turn){.first = a,
+                   .last = b,
+                   .turn_rad = 0.8 * s->turn_rad,
+                   .length_mm = strip->stations[b].s_mm - strip->stations[a].s_mm};
 }
 
-static double get_radius(const fg_stretch *s) {
+static double get_radius(const fg_turn *s) {
   return s->length_mm / fabs(s->turn_rad);
 }
 
-static double get_tightest(const fg_stretch *s) {
+static double get_tightest(const fg_turn *s) {
   return s->tightest_mm;
 }
 
 /* Radius where a turn of PROMINENCE_RAD has the min length: a bump's own, and of a gap that of its
  * fillets, however long the land between them is. */
-static double find_tightest(const fg_strip *strip, const double *direction, const fg_stretch *s) {
+static double find_tightest(const fg_strip *strip, const double *direction, const fg_turn *s) {
   double min = s->length_mm;
   double sign = s->turn_rad > 0 ? 1 : -1;
   for (size_t a = s->first, b = s->first; a <= s->last; a++) {
@@ -126,8 +125,8 @@ static double find_tightest(const fg_strip *strip, const double *direction, cons
   return min / PROMINENCE_RAD;
 }
 
-/* Part of a stretch's turn on radii below `limit_mm`. */
-static double sharp_turn(const fg_strip *strip, const double *direction, const fg_stretch *s,
+/* Part of a turn on radii below `limit_mm`. */
+static double sharp_turn(const fg_strip *strip, const double *direction, const fg_turn *s,
                          double limit_mm) {
   double sum = 0;
   for (size_t i = s->first; i < s->last; i++) {
@@ -140,19 +139,19 @@ static double sharp_turn(const fg_strip *strip, const double *direction, const f
 /* Finds the bumps' sense. A bump and the gap beside it turn by a pitch or more round the overall
  * circle, in the sense that bumps do not have; the median holds when a bump is crushed. With few
  * bumps the lip biases it, and the fillets mark the gaps. */
-static double find_sense(const fg_stretch *stretches, size_t count) {
+static double find_sense(const fg_turn *turns, size_t count) {
   double sums[STRETCHES_MAX];
   size_t n = 0;
   for (size_t i = 1; i + 2 < count; i++)
-    sums[n++] = stretches[i].turn_rad + stretches[i + 1].turn_rad;
+    sums[n++] = turns[i].turn_rad + turns[i + 1].turn_rad;
   if (n >= PAIRS_MIN) return fg_select(sums, n, n / 2) < 0 ? 1 : -1;
-  double up = median_over(stretches, count, 1, get_tightest);
-  return up > median_over(stretches, count, -1, get_tightest) ? 1 : -1;
+  double up = median_over(turns, count, 1, get_tightest);
+  return up > median_over(turns, count, -1, get_tightest) ? 1 : -1;
 }
 
-/* Middle of a lip's bend: the place where a stretch has turned by half a right angle from one of
+/* Middle of a lip's bend: the place where a turn has made half a right angle from one of
  * its ends. */
-static size_t bend_middle(const double *direction, const fg_stretch *s, bool from_last) {
+static size_t bend_middle(const double *direction, const fg_turn *s, bool from_last) {
   size_t at = from_last ? s->last : s->first, from = at;
   while (at != (from_last ? s->first : s->last) &&
          fabs(direction[at] - direction[from]) < LIP_TURN_MIN)
@@ -160,15 +159,15 @@ static size_t bend_middle(const double *direction, const fg_stretch *s, bool fro
   return at;
 }
 
-static double get_sharp(const fg_stretch *s) {
+static double get_sharp(const fg_turn *s) {
   return s->sharp_rad;
 }
 
 /* Finds a lip that is bent towards the shaft. It turns as the gaps do and is one with the first of
  * them, which then has a right angle more of sharp turn than the one fillet of its own. */
-static void find_lip_in_gaps(const double *direction, const fg_stretch *all, size_t count,
+static void find_lip_in_gaps(const double *direction, const fg_turn *all, size_t count,
                              fg_turning *out) {
-  const fg_stretch *first = &all[0], *last = &all[count - 1];
+  const fg_turn *first = &all[0], *last = &all[count - 1];
   if (out->lip_first || out->lip_last || out->bump_count < 2) return;
   double limit = 0.5 * median_over(all, count, -out->sense, get_sharp) + LIP_TURN_MIN;
   out->lip_first = first->turn_rad * out->sense < 0 && first->sharp_rad > limit;
@@ -178,15 +177,15 @@ static void find_lip_in_gaps(const double *direction, const fg_stretch *all, siz
 }
 
 /* Returns true for a lip: a tight bend in the bumps' sense, the first or last of its kind. */
-static bool is_lip(const fg_stretch *s, double typical_radius) {
+static bool is_lip(const fg_turn *s, double typical_radius) {
   return fabs(s->turn_rad) > LIP_TURN_MIN && get_radius(s) < typical_radius;
 }
 
-static void pick_bumps(const fg_strip *strip, const double *direction, const fg_stretch *all,
+static void pick_bumps(const fg_strip *strip, const double *direction, const fg_turn *all,
                        size_t count, fg_turning *out) {
   size_t n = 0;
   double radii[STRETCHES_MAX];
-  fg_stretch *bumps = out->bumps;
+  fg_turn *bumps = out->bumps;
   for (size_t i = 0; i < count; i++)
     if (all[i].turn_rad * out->sense > PROMINENCE_RAD) {
       radii[n] = all[i].bend_radius_mm;
@@ -196,8 +195,8 @@ static void pick_bumps(const fg_strip *strip, const double *direction, const fg_
   double sorted[STRETCHES_MAX];
   memcpy(sorted, radii, n * sizeof *radii);
   double limit = LIP_RADIUS * fg_select(sorted, n, n / 2);
-  fg_stretch first = tight_part(strip, direction, &bumps[0]);
-  fg_stretch last = tight_part(strip, direction, &bumps[n - 1]);
+  fg_turn first = tight_part(strip, direction, &bumps[0]);
+  fg_turn last = tight_part(strip, direction, &bumps[n - 1]);
   out->lip_first = n > 1 && is_lip(&first, limit);
   out->lip_last = n > 1 && is_lip(&last, limit);
   out->lip_end[0] = first.last;
@@ -210,29 +209,29 @@ static void pick_bumps(const fg_strip *strip, const double *direction, const fg_
 fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *turning) {
   memset(turning, 0, sizeof *turning);
   double *direction = NULL;
-  fg_stretch *stretches = NULL;
+  fg_turn *turns = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *direction, (void **)&direction));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *stretches, (void **)&stretches));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turns, (void **)&turns));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turning->bumps, (void **)&turning->bumps));
   if (strip->count < 8) goto exit;
   find_directions(strip, direction);
-  size_t count = cut_stretches(strip, direction, stretches);
+  size_t count = cut_turns(strip, direction, turns);
   for (size_t i = 0; i < count; i++) {
-    fg_stretch tight = tight_part(strip, direction, &stretches[i]);
-    stretches[i].bend_radius_mm = get_radius(&tight);
-    stretches[i].tightest_mm = find_tightest(strip, direction, &stretches[i]);
+    fg_turn tight = tight_part(strip, direction, &turns[i]);
+    turns[i].bend_radius_mm = get_radius(&tight);
+    turns[i].tightest_mm = find_tightest(strip, direction, &turns[i]);
   }
-  turning->sense = find_sense(stretches, count);
-  double sharp = SHARP_RADIUS * median_over(stretches, count, turning->sense, get_tightest);
+  turning->sense = find_sense(turns, count);
+  double sharp = SHARP_RADIUS * median_over(turns, count, turning->sense, get_tightest);
   for (size_t i = 0; i < count; i++)
-    stretches[i].sharp_rad = sharp_turn(strip, direction, &stretches[i], sharp);
-  pick_bumps(strip, direction, stretches, count, turning);
-  if (count) find_lip_in_gaps(direction, stretches, count, turning);
+    turns[i].sharp_rad = sharp_turn(strip, direction, &turns[i], sharp);
+  pick_bumps(strip, direction, turns, count, turning);
+  if (count) find_lip_in_gaps(direction, turns, count, turning);
 exit:
   free(direction);
-  free(stretches);
+  free(turns);
   if (status != FG_OK) fg_turning_free(turning);
   return status;
 }

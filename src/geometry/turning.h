@@ -13,18 +13,18 @@
 
 #include "foilgauge/strip.h"
 
-/* A stretch between two turning points: stations [first, last]. */
-typedef struct fg_stretch {
+/* Stations [first, last] between two turning points of the direction. */
+typedef struct fg_turn {
   size_t first, last;
   double turn_rad; /* signed */
   double length_mm;
   double bend_radius_mm; /* mean radius where 80 % of the turn happens */
   double tightest_mm;    /* radius where it turns fastest */
   double sharp_rad;      /* turn on radii far below a bump's */
-} fg_stretch;
+} fg_turn;
 
 typedef struct fg_turning {
-  fg_stretch *bumps; /* in the order of the stations; owned */
+  fg_turn *bumps; /* in the order of the stations; owned */
   size_t bump_count;
   bool lip_first, lip_last; /* a lip was seen at the first, the last station's end */
   size_t lip_end[2];        /* station where the lip's bend ends; valid where there is a lip */
