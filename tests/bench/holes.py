@@ -128,7 +128,7 @@ def main():
     arguments = parser.parse_args()
     os.makedirs(FOLDER, exist_ok=True)
     discs, rows = measure(arguments.scan, arguments.dpi)
-    disc = max((d for d in discs if not d["flags"]), key=lambda d: d["radius_mm"])
+    disc = max((d for d in discs if "poor_fit" not in d["flags"]), key=lambda d: d["radius_mm"])
     angle, values = residual(disc, rows)
     plot(os.path.join(FOLDER, "holes.svg"), angle, values,
          f"Feature {disc['number']}: radial residual of the edge, outwards positive")
