@@ -75,7 +75,8 @@ while time.monotonic() < end:
         if len(kept) > 200:
             kept.pop(0).close()
     longest = max(longest, ask())
-assert longest < 1, longest
+# Whatever else the machine does, where the test runs for a few seconds among others.
+assert longest < (1 if seconds > 6 else 5), longest
 print("%d requests, a page after %.2f s at most" % (sent, longest))
 PY
 (ulimit -n 4096 2>/dev/null || true; checks "$work/attack.py" "$(cat "$work/address")" "$seconds") >"$work/found" 2>>"$work/said" ||
@@ -113,9 +114,15 @@ for name in os.listdir("."):
     if name.startswith((".gone", ".other", "swap", ".new")):
         os.rmdir(name) if os.path.isdir(name) and not os.path.islink(name) else os.unlink(name)
 PY
-before=$(python3 -c 'import sqlite3, sys; print(sqlite3.connect(sys.argv[1]).execute("SELECT count(*) FROM scans").fetchone()[0])' "$work/in/foilgauge.sqlite")
+# By its name: a scan that was swapped may be measured still.
+kept() { # FILE
+  [ "$(python3 -c 'import sqlite3, sys
+print(sqlite3.connect(f"file:{sys.argv[1]}?mode=ro", uri=True)
+      .execute("SELECT count(*) FROM scans WHERE path = ?1 OR path LIKE ?2", (sys.argv[2], "%/" + sys.argv[2])).fetchone()[0])' \
+    "$work/in/foilgauge.sqlite" "$1")" -eq 1 ]
+}
 cp "$work/3.png" "$work/in/3.png"
-wait_for 20 measured "$work/in" $((before + 1))
+wait_for 20 kept 3.png
 
 # The station's own file is replaced: the station says so, and goes on when that is over.
 for what in garbage folder pipe other; do
