@@ -17,8 +17,9 @@
 enum { DRAWS_OF_A_TASK = 10, SCATTER_DRAWS = 200 };
 static const double confidence = 0.95;
 
-/* Ratio that stands for a bearing that is stable at every mass, among sorted ratios. */
-static const double large = 1e100;
+/* Ratio that stands for a bearing that is stable at every mass, among sorted ratios, and one that
+ * only a quantile between such a bearing and a finite one exceeds. */
+static const double large = 1e100, finite_max = 1e50;
 
 typedef struct draw_task {
   fg_film_report *report;
@@ -183,7 +184,7 @@ static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
   for (size_t k = 0; k < FG_FILM_QUANTILES; k++)
     draws->quantile[k] = known ? fg_sample_quantile(ratio, known, fg_assembly_probability[k]) : NAN;
   for (size_t k = 0; k < FG_FILM_QUANTILES; k++)
-    if (draws->quantile[k] > large / 4) draws->quantile[k] = INFINITY;
+    if (draws->quantile[k] > finite_max) draws->quantile[k] = INFINITY;
   free(ratio);
   finish_share(&draws->solved, draws->count);
   finish_share(&draws->touching, draws->count);

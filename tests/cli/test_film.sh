@@ -62,6 +62,15 @@ expect 0 "" "$program" film design.json $fast --speeds 30000:90000:2 --shims=-7:
 expect 0 "" "$program" film $fast --speeds 30000:90000:2 --shims 0:0 --draws 1 -o none.json
 near "no deviation" "$(value none.json "r['draws']['mass_over_perfect']['median']")" 1 1e-7
 
+# A quantile between a bearing of a finite mass and one that is stable at every mass is none of a mass.
+expect 0 "" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 --speeds 120000:121000:2 \
+  --shims=-50:50 --draws 8 --seed 3 -o mixed.json
+checks - <<'END' || fail "quantiles of masses are not right"
+import json
+q = json.load(open("mixed.json"))["draws"]["mass_over_perfect"]
+assert all(v is None or v < 1e6 for v in q.values()), q
+END
+
 # Draws that are kept: a run goes on from them, whatever line a kill has cut off; shards joined by cat are the whole; of other settings
 # they are refused.
 draws="design.json $fast --speeds 30000:90000:2 --shims=-7:7"
