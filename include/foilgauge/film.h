@@ -242,8 +242,9 @@ typedef struct fg_film_orbit_place {
 typedef enum fg_film_fate {
   FG_FILM_DECAYS,
   FG_FILM_GROWS,
-  FG_FILM_CYCLES,  /* the amplitude stays */
-  FG_FILM_TOUCHES, /* the film ends before the turns do */
+  FG_FILM_CYCLES,       /* the amplitude stays */
+  FG_FILM_TOUCHES,      /* the film ends before the turns do */
+  FG_FILM_FATE_UNKNOWN, /* too few whirls in these turns */
 } fg_film_fate;
 extern const char *const fg_film_fate_words[]; /* "decays", "grows", ..., NULL */
 

@@ -216,7 +216,8 @@ static void read_mesh(film_run *run, struct argp_state *state, const char *text)
   run->options.cells_axial = (size_t)n[1];
 }
 
-/* Options that are one number. */
+/* Options that are one number: their names with their units, which a message shows. Ranges tell
+ * other units: metres, pascals, bars. */
 typedef struct number_option {
   int key;
   const char *name;
@@ -227,25 +228,25 @@ typedef struct number_option {
 #define NUMBER(key, name, field, lowest, highest)                                                  \
   { key, name, offsetof(fg_film_options, field), lowest, highest }
 static const number_option numbers[] = {
-    NUMBER(OPTION_LOAD, "load", load_n, 1e-9, 1e7),
-    NUMBER(OPTION_LOAD_ANGLE, "load-angle", load_deg, -720, 720),
-    NUMBER(OPTION_SPEED, "speed", speed_rpm, 1e-3, 1e8),
-    NUMBER(OPTION_MASS, "mass", rotor_mass_kg, 1e-9, 1e6),
-    NUMBER(OPTION_LENGTH, "length", length_mm, 1e-3, 1e5),
-    NUMBER(OPTION_CLEARANCE, "clearance", clearance_um, 1e-3, 1e5),
+    NUMBER(OPTION_LOAD, "load N", load_n, 1e-6, 1e6),
+    NUMBER(OPTION_LOAD_ANGLE, "load-angle DEG", load_deg, -720, 720),
+    NUMBER(OPTION_SPEED, "speed RPM", speed_rpm, 1, 2e6),
+    NUMBER(OPTION_MASS, "mass KG", rotor_mass_kg, 1e-9, 1e5),
+    NUMBER(OPTION_LENGTH, "length MM", length_mm, 0.1, 5000),
+    NUMBER(OPTION_CLEARANCE, "clearance UM", clearance_um, 1, 5000),
     NUMBER(OPTION_COMPLIANCE, "compliance", compliance, 0, 1e6),
     NUMBER(OPTION_LOSS, "loss-factor", loss_factor, 0, 10),
     NUMBER(OPTION_FRICTION, "friction", material.friction, 0, 10),
-    NUMBER(OPTION_MODULUS, "elastic-modulus", material.youngs_modulus_gpa, 1e-3, 1e5),
-    NUMBER(OPTION_PITCH, "pitch", pitch_deg, 1e-3, 360),
-    NUMBER(OPTION_TOP_FOIL, "top-foil-thickness", top_foil_mm, 1e-6, 100),
-    NUMBER(OPTION_VISCOSITY, "viscosity", viscosity_upa_s, 1e-3, 1e6),
-    NUMBER(OPTION_AMBIENT, "ambient", ambient_kpa, 1e-3, 1e6),
-    NUMBER(OPTION_WITHIN, "within", within_pct, 0.1, 100),
-    NUMBER(OPTION_LIFT_OFF, "lift-off", lift_off_rpm, 1e-3, 1e8),
-    NUMBER(OPTION_U_LIFT_OFF, "u-lift-off", u_lift_off_rpm, 0, 1e8),
-    NUMBER(OPTION_U_LOAD, "u-load", u_load_n, 0, 1e7),
-    NUMBER(OPTION_TOUCHING, "touching", touching_um, 0, 1e5),
+    NUMBER(OPTION_MODULUS, "elastic-modulus GPA", material.youngs_modulus_gpa, 1, 1000),
+    NUMBER(OPTION_PITCH, "pitch DEG", pitch_deg, 1e-3, 360),
+    NUMBER(OPTION_TOP_FOIL, "top-foil-thickness MM", top_foil_mm, 1e-3, 10),
+    NUMBER(OPTION_VISCOSITY, "viscosity UPAS", viscosity_upa_s, 1, 1000),
+    NUMBER(OPTION_AMBIENT, "ambient KPA", ambient_kpa, 5, 50000),
+    NUMBER(OPTION_WITHIN, "within PERCENT", within_pct, 0.1, 100),
+    NUMBER(OPTION_LIFT_OFF, "lift-off RPM", lift_off_rpm, 1, 2e6),
+    NUMBER(OPTION_U_LIFT_OFF, "u-lift-off RPM", u_lift_off_rpm, 0, 2e6),
+    NUMBER(OPTION_U_LOAD, "u-load N", u_load_n, 0, 1e6),
+    NUMBER(OPTION_TOUCHING, "touching UM", touching_um, 0, 1000),
 };
 
 static error_t parse_film_number(int key, const char *text, struct argp_state *state) {

@@ -14,14 +14,14 @@ static const double usual_ratio = 0.5;
 /* An orbit whose amplitude changes by less than this share in a turn neither grows nor decays. */
 static const double growth_small = 1e-3;
 
-const char *const fg_film_fate_words[] = {[FG_FILM_DECAYS] = "decays",
-                                          [FG_FILM_GROWS] = "grows",
-                                          [FG_FILM_CYCLES] = "limit cycle",
-                                          [FG_FILM_TOUCHES] = "touches",
-                                          NULL};
+const char *const fg_film_fate_words[] = {
+    [FG_FILM_DECAYS] = "decays",        [FG_FILM_GROWS] = "grows",
+    [FG_FILM_CYCLES] = "limit cycle",   [FG_FILM_TOUCHES] = "touches",
+    [FG_FILM_FATE_UNKNOWN] = "unknown", NULL};
 
 static fg_film_fate find_fate(const fg_film_orbit *orbit, size_t asked) {
   if (orbit->count < asked) return FG_FILM_TOUCHES;
+  if (isnan(orbit->growth_per_turn)) return FG_FILM_FATE_UNKNOWN;
   if (orbit->growth_per_turn > growth_small) return FG_FILM_GROWS;
   return orbit->growth_per_turn < -growth_small ? FG_FILM_DECAYS : FG_FILM_CYCLES;
 }

@@ -70,6 +70,8 @@ import json
 q = json.load(open("mixed.json"))["draws"]["mass_over_perfect"]
 assert all(v is None or v < 1e6 for v in q.values()), q
 END
+expect 0 "median stable at every mass" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 \
+  --speeds 120000:121000:2 --shims=-50:50 --draws 8 --seed 3 --table -
 
 # Draws that are kept: a run goes on from them, whatever line a kill has cut off; shards joined by cat are the whole; of other settings
 # they are refused.
@@ -153,6 +155,10 @@ expect 0 "orbit in time: decays" "$program" film $fast --speeds 30000:90000:2 --
 [ "$(wc -l <orbit.csv)" = 642 ] && grep -q 'Orbit of the rotor' orbit.html || fail "the orbit"
 valid film.schema.json orbit.json
 expect 0 "orbit in time: (grows|touches)" "$program" film $fast --speeds 30000:90000:2 --mass 2 --orbit 20 --table -
+expect 0 "orbit in time: unknown; too few whirls" "$program" film $fast --speeds 30000:90000:2 --load 5 --clearance 80 --mass 0.5 --orbit 4 --table - -o short.json
+[ "$(value short.json 'r["orbit"]["fate"], r["orbit"]["growth_per_turn"]')" = "('unknown', None)" ] || fail "an orbit of few whirls has a fate"
+valid film.schema.json short.json
+expect 0 "is unstable at all speeds" "$program" film $fast --speeds 30000:90000:2 --load 5 --clearance 80 --mass 0.5 --table -
 expect 64 "needs --orbit" "$program" film $fast --orbit-out orbit.csv
 
 # Sensitivities: the clearance falls by the thickness; the stiffness rises with its cube.
@@ -268,7 +274,7 @@ END
 brief || no_gaps
 expect 64 "is of --lift-off" "$program" film $fast --u-lift-off 7
 expect 64 "u-load is of --lift-off" "$program" film $fast --u-load 1
-expect 64 "lift-off: '0' is not a number" "$program" film $fast --lift-off 0
+expect 64 "lift-off RPM: '0' is not a number" "$program" film $fast --lift-off 0
 [ "$(value oval.json "20 < r['load_capacity_n'] and r['lift_off_rpm'] < 60000")" = True ] || fail "limits of the load and the speed"
 
 # A load beyond the film, and a touching one.
@@ -338,6 +344,13 @@ done <<'END'
 64|no model of|--load 5 --speed 60000 --clearance 80 --model own
 64|do not fit|--load 5 --speed 60000 --clearance 80 --pitch 20
 64|states none|--load 5 --speed 60000 --clearance 80 --top-foil sagging
+64|ambient KPA: '101325'|--load 5 --speed 60000 --ambient 101325
+64|ambient KPA: '1.013'|--load 5 --speed 60000 --ambient 1.013
+64|clearance UM: '0.08'|--load 5 --speed 60000 --clearance 0.08
+64|viscosity UPAS: '1.85e-5'|--load 5 --speed 60000 --viscosity 1.85e-5
+64|length MM: '0.04'|--load 5 --speed 60000 --length 0.04
+64|speed RPM: '-60000'|--load 5 --speed -60000
+64|load N: 'nan'|--load nan --speed 60000
 64|has at most 96|--load 5 --speed 60000 --clearance 80 --pads 20
 END
 expect 65 "not a report of .foilgauge measure" "$program" film $fast --foils film.json

@@ -293,7 +293,7 @@ static bool find_orbit_place(const fg_subject *list, size_t i, fg_subject *eleme
 
 static const fg_member orbit_rows[] = {
     {FG_WORD("fate", fg_film_orbit, fate, fg_film_fate_words),
-     .words = "touches: the film ends before the turns do"},
+     .words = "touches: the film ends before the turns do; unknown: too few whirls in these turns"},
     {FG_NUMBER("growth_per_turn", fg_film_orbit, growth_per_turn),
      .words = "logarithm of the amplitude per turn of the rotor"},
     {FG_NUMBER("whirl_ratio", fg_film_orbit, whirl_ratio), .words = "whirl over speed"},

@@ -38,6 +38,11 @@ void fg_film_draws_words(const fg_film_report *report, char *text, size_t size);
 /* Says which tolerance on the clearance keeps the threshold speed. */
 void fg_film_tolerance_words(const fg_film_report *report, char *text, size_t size);
 
+/* Says how the orbit's amplitude goes on, and the critical masses of the draws over the perfect
+ * bearing's. */
+void fg_film_orbit_words(const fg_film_orbit *orbit, char *text, size_t size);
+void fg_film_quantile_words(const fg_film_draws *draws, char *text, size_t size);
+
 /* "stable", "unstable", "stable at every mass" for the rotor of the report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
 

@@ -117,15 +117,16 @@ static void put_sensitivities(FILE *out, const fg_film_report *r) {
 }
 
 static void put_orbit(FILE *out, const fg_film_report *r) {
+  char words[200];
   if (!r->orbit.count) return;
+  fg_film_orbit_words(&r->orbit, words, sizeof words);
   fprintf(out, "<section>\n<h2 class=\"first\">The orbit in time: %s</h2>\n<figure>",
           fg_film_fate_words[r->orbit.fate]);
   fg_film_plot_orbit(out, r);
   fprintf(out,
           "<figcaption>%.0f turns of the rotor after a pulse of 2 %% of the load; the dot is its "
-          "steady place. The amplitude grows by exp(%.3g) a turn, at %.3g of the speed."
-          "</figcaption></figure>\n</section>\n",
-          r->orbit.point[r->orbit.count - 1].turn, r->orbit.growth_per_turn, r->orbit.whirl_ratio);
+          "steady place: %s.</figcaption></figure>\n</section>\n",
+          r->orbit.point[r->orbit.count - 1].turn, words);
 }
 
 static void put_draws(FILE *out, const fg_film_report *r) {
@@ -136,11 +137,8 @@ static void put_draws(FILE *out, const fg_film_report *r) {
   fprintf(out, "<section>\n<h2 class=\"first\">Drawn bearings</h2>\n<p>%s.</p>\n", words);
   fg_html_table(out, &fg_film_share_members, &(fg_subject){.object = d, .whole = r},
                 fg_film_share_at);
-  fprintf(out,
-          "<p>Critical mass over the perfect bearing's: %.3g at 5 %%, %.3g at "
-          "25 %%, %.3g in the middle, %.3g at 75 %%, %.3g at 95 %% of those solved.</p>\n"
-          "</section>\n",
-          d->quantile[0], d->quantile[1], d->quantile[2], d->quantile[3], d->quantile[4]);
+  fg_film_quantile_words(d, words, sizeof words);
+  fprintf(out, "<p>Critical mass over the perfect bearing's: %s.</p>\n</section>\n", words);
 }
 
 fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out) {

@@ -174,6 +174,15 @@ void fg_film_plot_coefficients(FILE *out, const fg_film_report *r, bool damping)
   fg_plot_end(&at);
 }
 
+/* Field of the orbit, px: both axes have one scale. */
+enum { ORBIT_WIDTH = 890, ORBIT_HEIGHT = 560 };
+
+static void set_span(double range[2], double span) {
+  double middle = (range[0] + range[1]) / 2;
+  range[0] = middle - span / 2;
+  range[1] = middle + span / 2;
+}
+
 void fg_film_plot_orbit(FILE *out, const fg_film_report *r) {
   const fg_film_orbit *orbit = &r->orbit;
   double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
@@ -183,10 +192,14 @@ void fg_film_plot_orbit(FILE *out, const fg_film_report *r) {
   }
   fg_range_pad(x, 0.08, 1e-6);
   fg_range_pad(y, 0.08, 1e-6);
-  fg_plot at = fg_plot_frame_begin(out, &(fg_plot_frame){"Orbit of the rotor", .width = 600,
-                                                         .height = 480, .left = 90, .x = x, .y = y,
-                                                         .y_title = "towards 90 degrees, µm",
-                                                         .x_title = "towards 0 degrees, µm"});
+  double um = fmax((x[1] - x[0]) / ORBIT_WIDTH, (y[1] - y[0]) / ORBIT_HEIGHT); /* a px, both ways */
+  set_span(x, um * ORBIT_WIDTH);
+  set_span(y, um * ORBIT_HEIGHT);
+  fg_plot at = fg_plot_frame_begin(
+      out, &(fg_plot_frame){"Orbit of the rotor", .width = ORBIT_WIDTH + 110,
+                            .height = ORBIT_HEIGHT + 70, .left = 90, .right = 20, .top = 20, .x = x,
+                            .y = y, .y_title = "towards 90 degrees, µm",
+                            .x_title = "towards 0 degrees, µm"});
   fputs("<path class=\"thin\" d=\"", out);
   for (size_t i = 0; i < orbit->count; i++)
     fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, orbit->point[i].place_um[0]),

@@ -49,10 +49,15 @@ static void put_draws(FILE *out, const fg_film_report *r) {
   fprintf(out, "\n%s\n", words);
   fg_members_terminal(out, "  ", &fg_film_share_members, &(fg_subject){.object = d, .whole = r},
                       fg_film_share_at);
-  fprintf(out,
-          "  critical mass over the perfect bearing's, 5 to 95 %%: %.3g  %.3g  %.3g  %.3g  "
-          "%.3g\n",
-          d->quantile[0], d->quantile[1], d->quantile[2], d->quantile[3], d->quantile[4]);
+  fg_film_quantile_words(d, words, sizeof words);
+  fprintf(out, "\n  critical mass over the perfect bearing's: %s\n", words);
+}
+
+static void put_orbit(FILE *out, const fg_film_report *r) {
+  char words[200];
+  if (!r->orbit.count) return;
+  fg_film_orbit_words(&r->orbit, words, sizeof words);
+  fprintf(out, "\n  orbit in time: %s; %s\n", fg_film_fate_words[r->orbit.fate], words);
 }
 
 fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out) {
@@ -68,9 +73,7 @@ fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out
     fprintf(out, "  load capacity    %.4g N at this speed\n", r->load_capacity_n);
   if (isfinite(r->lift_off_rpm))
     fprintf(out, "  lift-off         %.4g rpm under this load\n", r->lift_off_rpm);
-  if (r->orbit.count)
-    fprintf(out, "\n  orbit in time: %s; exp(%.3g) a turn, whirl at %.3g of the speed\n",
-            fg_film_fate_words[r->orbit.fate], r->orbit.growth_per_turn, r->orbit.whirl_ratio);
+  put_orbit(out, r);
   put_sensitivities(out, r);
   put_draws(out, r);
   size_t count = fg_film_notes(r, notes);

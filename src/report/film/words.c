@@ -6,6 +6,20 @@
 
 #include "report/film/members.h"
 
+/* Verdict on a rotor that passes no threshold among the speeds. */
+static const char *find_verdict_of_map(const fg_film_report *r) {
+  size_t known = 0, unstable = 0;
+  for (size_t i = 0; i < r->speeds; i++) {
+    if (r->speed[i].outcome == FG_FILM_UNSOLVED) continue;
+    known++;
+    unstable += r->options.rotor_mass_kg > r->speed[i].critical_mass_kg;
+  }
+  if (!known) return "has no film";
+  if (unstable == known) return "is unstable at all speeds that have a film";
+  return unstable ? "does not pass from stable to unstable"
+                  : "is stable at all speeds that have a film";
+}
+
 static void note_threshold(const fg_film_report *r, char *note) {
   const fg_film_options *o = &r->options;
   if (isfinite(r->threshold_rpm))
@@ -13,10 +27,33 @@ static void note_threshold(const fg_film_report *r, char *note) {
              "The rotor of %.4g kg on this bearing whirls from %.0f rpm on, under this load.",
              o->rotor_mass_kg, r->threshold_rpm);
   else
-    snprintf(
-        note, FG_FILM_NOTE,
-        "Between %.0f and %.0f rpm the rotor of %.4g kg does not pass from stable to unstable.",
-        o->speed_low_rpm, o->speed_high_rpm, o->rotor_mass_kg);
+    snprintf(note, FG_FILM_NOTE, "Between %.0f and %.0f rpm the rotor of %.4g kg %s.",
+             o->speed_low_rpm, o->speed_high_rpm, o->rotor_mass_kg, find_verdict_of_map(r));
+}
+
+void fg_film_orbit_words(const fg_film_orbit *orbit, char *text, size_t size) {
+  if (isnan(orbit->growth_per_turn))
+    snprintf(text, size,
+             "too few whirls in these turns to tell its growth: more --orbit TURNS may");
+  else
+    snprintf(text, size, "amplitude times %.4g a turn, whirl at %.3g of the speed",
+             exp(orbit->growth_per_turn), orbit->whirl_ratio);
+}
+
+void fg_film_quantile_words(const fg_film_draws *d, char *text, size_t size) {
+  static const char *const where[FG_FILM_QUANTILES] = {"at 5 %", "at 25 %", "median", "at 75 %",
+                                                       "at 95 %"};
+  size_t used = 0;
+  text[0] = '\0';
+  if (!d->solved.count) snprintf(text, size, "none is solved");
+  for (size_t k = 0; d->solved.count && k < FG_FILM_QUANTILES && used < size; k++) {
+    const char *mark = k ? ", " : "";
+    int more =
+        isfinite(d->quantile[k])
+            ? snprintf(text + used, size - used, "%s%s %.3g", mark, where[k], d->quantile[k])
+            : snprintf(text + used, size - used, "%s%s stable at every mass", mark, where[k]);
+    used += more > 0 ? (size_t)more : 0;
+  }
 }
 
 /* Behind the words on draws: those that are not there. */
