@@ -16,6 +16,11 @@ void fg_numerics_start(void) {
   pthread_once(&once, turn_handler_off);
 }
 
+double fg_log_gamma(double x) {
+  int sign;
+  return lgamma_r(x, &sign);
+}
+
 fg_margin fg_margin_to(double lower, double upper, double value) {
   double below = value - lower, above = upper - value;
   bool is_upper = isfinite(upper) && !(isfinite(lower) && below < above);

@@ -5,11 +5,12 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 
 double fg_chart_c4(size_t n) {
   if (n < 2) return NAN;
   double dof = (double)n - 1;
-  return sqrt(2 / dof) * exp(lgamma((double)n / 2) - lgamma(dof / 2));
+  return sqrt(2 / dof) * exp(fg_log_gamma((double)n / 2) - fg_log_gamma(dof / 2));
 }
 
 /* Simpson's rule over ±9 sigma: the density beyond is below 1e-18. */

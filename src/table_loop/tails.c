@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "core/numerics.h"
+
 /* Range of a wrong value, in sd of the others, to either side. */
 #define WILD 20
 /* Log odds of a further wrong value beside a first one, of FURTHER_OF values: several values far
@@ -55,7 +57,7 @@ static double t_likelihood(size_t rest, const double *value, size_t wrong,
             count;
     if (fabs(scale - before) < SCALE_CONVERGED * before) break;
   }
-  double one = lgamma((dof + 1) / 2) - lgamma(dof / 2) - 0.5 * log(dof * M_PI * scale);
+  double one = fg_log_gamma((dof + 1) / 2) - fg_log_gamma(dof / 2) - 0.5 * log(dof * M_PI * scale);
   return count * one -
          (dof + 1) / 2 *
              (log_terms(rest, value, dof, scale) + log_terms(wrong, wrong_value, dof, scale));

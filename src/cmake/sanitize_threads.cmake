@@ -1,0 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# ThreadSanitizer.
+set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "")
+set(FOILGAUGE_HARDENING OFF CACHE BOOL "")
+set(FOILGAUGE_SANITIZE_THREADS ON CACHE BOOL "")
