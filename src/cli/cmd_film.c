@@ -64,7 +64,7 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {NULL, 0, NULL, 0, "What the rotor asks (both are needed):", 1},
+    {NULL, 0, NULL, 0, "The rotor (--load and --speed are needed):", 1},
     {"load", OPTION_LOAD, "N", 0, "Force on the rotor, on this bearing", 1},
     {"speed", OPTION_SPEED, "RPM", 0, "Of the rotor", 1},
     {"load-angle", OPTION_LOAD_ANGLE, "DEG", 0,
@@ -108,7 +108,7 @@ static const struct argp_option options[] = {
     {"viscosity", OPTION_VISCOSITY, "UPAS", 0,
      "Of the gas, micropascal seconds (default: @film_viscosity_upa_s@, air at 25 degrees C)", 2},
     {"ambient", OPTION_AMBIENT, "KPA", 0, "Pressure around (default: @film_ambient_kpa@)", 2},
-    {NULL, 0, NULL, 0, "What is asked of it:", 3},
+    {NULL, 0, NULL, 0, "What is asked:", 3},
     {"speeds", OPTION_SPEEDS, "LOW:HIGH[:N]", 0,
      "Of the stability map, rpm (default: a quarter to four times the speed, @film_speeds@)", 3},
     {"orbit", OPTION_ORBIT, "TURNS", 0,

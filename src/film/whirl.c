@@ -47,6 +47,7 @@ fg_status fg_film_impedance(fg_context *ctx, fg_film *film, const fg_film_case *
   }
   return FG_OK;
 }
+
 static void find_eigenvalues(double complex z[2][2], double complex value[FG_FILM_ROOTS]) {
   double complex mean = (z[0][0] + z[1][1]) / 2;
   double complex root = csqrt((z[0][0] - z[1][1]) * (z[0][0] - z[1][1]) / 4 + z[0][1] * z[1][0]);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From scans to the rotor: small lots of classical, sinusoidal and cantilever foils are rendered, measured and made into
+"""From scans to the rotor: lots of classical, sinusoidal and cantilever foils are rendered, measured and made into
 bearings; their gas films from measured numbers are held against those from the truth. Writes reports/thesis/rotor_lots.md
 to standard output.
 
@@ -19,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import thesis_lot  # noqa: E402
 import thesis_lots  # noqa: E402
 
-FOILS, PADS, DPI = 6, 3, 1200
+FOILS, PADS, DPI = 14, 3, 1200
 SLEEVE, ROTOR, THICKNESS = 20.73, 20.0, 0.1
 CLASSICAL = {"schema": "foilgauge/design/1", "name": "classical", "bump_radius_mm": 3.32, "bump_angle_deg": 63.15,
              "overall_radius_mm": SLEEVE, "thickness_mm": THICKNESS, "bump_count": 9}
@@ -36,9 +36,9 @@ WORDS = """
 `/usr/bin/python3 tests/bench/film_lots.py build/foilgauge > reports/thesis/rotor_lots.md` writes this page: foils with known radii and angles are
 rendered at 1200 dpi, `foilgauge measure` measures them, three of them make a bearing, and `foilgauge film` solves it from the
 measured clearances and once more from the true ones. What differs is the error that measuring adds to the rotor's numbers, and it is held against the u that the
-program states. Classical and sinusoidal foils are those of tests/bench/thesis_lot.py and thesis_lots.py (six of each), the clearance that of each bump as fitted into the sleeve. A cantilever
+program states. Classical and sinusoidal foils are those of tests/bench/thesis_lot.py and thesis_lots.py ({FOILS} of each), the clearance that of each bump as fitted into the sleeve. A cantilever
 foil has no bumps: the change of its beams' sagitta shifts the clearance of table 5.6 (80 um) at eight places a pad. 5 N, 60 000 rpm, compliance 0.67,
-mesh 2,4; bearings are drawn from the six foils with seed 1. Foils with a bump that was not measured are left out. "Micrometer": the strip's thickness was measured apart (0.1 mm, u 0.5 um).
+mesh 2,4; bearings are drawn from the {FOILS} foils with seed 1. Foils with a bump that was not measured are left out. "Micrometer": the strip's thickness was measured apart (0.1 mm, u 0.5 um).
 
 The clearance of bumps is measured far better than its u says without a micrometer: this u is that of the strip's thickness, which a scan alone does not know (the driver's
 tone). With a micrometer it hardly adds to the film. A cantilever's clearance follows from the lengths of its beams, which need no micrometer. The critical mass of a few grams hangs on what is not round, and is uncertain by tens of percent where the rest is known to one.
@@ -170,13 +170,26 @@ def film_rows(name, pairs):
               f"{rms([u for _, u, _ in rows]):.{digits}f}{unit} | {100 * inside / len(rows):.0f} |")
 
 
+def interval_row(name, pairs):
+    """Share of the true critical masses in the interval of 95 % that the program states; one that is stable at every mass is above it."""
+    held = known = 0
+    for found, true in pairs:
+        low, high = found.get("uncertainty", {}).get("critical_mass_95_kg") or (None, None)
+        if None in (low, high) or true["bearing"]["outcome"] == "unsolved":
+            continue
+        mass = true["bearing"]["critical_mass_kg"]
+        known += 1
+        held += mass is not None and low <= mass <= high
+    return f"| {name} | {len(pairs)} | {known} | {held} |"
+
+
 def verdict(report):
     mass = report["bearing"]["critical_mass_kg"]
     return report["bearing"]["outcome"] if report["bearing"]["outcome"] != "solved" else "stable at every mass" if mass is None else "finite"
 
 
 def main():
-    program, count = str(pathlib.Path(sys.argv[1]).resolve()), int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    program, count = str(pathlib.Path(sys.argv[1]).resolve()), int(sys.argv[2]) if len(sys.argv) > 2 else 16
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         lots = {}
@@ -186,7 +199,7 @@ def main():
                 lots[name + words] = foils, [str(work / f"{name}.json")]
         lots["cantilever"] = lot(program, work, "cantilever", cantilever_specs, CANTILEVER, beam_foil), ["--bumps", "8", "--clearance", "80"]
         pairs = {name: hold(program, work, foils, count, extra) for name, (foils, extra) in lots.items()}
-    print(WORDS.strip())
+    print(WORDS.strip().replace("{FOILS}", str(FOILS)))
     print("\n## Clearances\n\nOf every bump or beam; um.\n\n| lot | places | mean | from, to | mean error | rms error | rms u | within 2u, % |\n"
           "|---|---|---|---|---|---|---|---|")
     for name, (foils, _) in lots.items():
@@ -195,6 +208,10 @@ def main():
           "| lot | quantity | bearings | true, median | rms error | rms u | within 2u, % |\n|---|---|---|---|---|---|---|")
     for name, rows in pairs.items():
         film_rows(name, rows)
+    print("\n## Intervals of the critical mass\n\nThe program states one of 95 % where all bearings within the u of the clearances are solved, and none of them is stable at every mass.\n\n"
+          "| lot | bearings | with an interval | true one in it |\n|---|---|---|---|")
+    for name, rows in pairs.items():
+        print(interval_row(name, rows))
     print("\n## Verdicts\n\n| lot | bearings | same verdict from measured numbers | verdicts of the true bearings |\n|---|---|---|---|")
     for name, rows in pairs.items():
         words = [(verdict(f), verdict(t)) for f, t in rows]

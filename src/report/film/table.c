@@ -21,7 +21,7 @@ static void put_note(FILE *out, const char *text) {
 
 static void put_conditions(FILE *out, const fg_film_report *r) {
   const fg_film_options *o = &r->options;
-  fprintf(out, "design %s; %.4g N towards %g degrees, %.5g rpm, rotor %.4g kg\n", r->design.name,
+  fprintf(out, "design %s; %.4g N towards %g degrees, %.6g rpm, rotor %.4g kg\n", r->design.name,
           o->load_n, o->load_deg, o->speed_rpm, o->rotor_mass_kg);
   fprintf(out, "D %.4g mm, L %.4g mm, C %.4g um; compliance %.4g, loss factor %.3g\n\n",
           r->diameter_mm, r->length_mm, r->clearance_um, r->compliance, o->loss_factor);
@@ -67,12 +67,12 @@ fg_status fg_film_write_text(fg_context *ctx, const fg_film_report *r, FILE *out
                       fg_film_bearing_at);
   put_modes(out, r);
   if (isfinite(r->threshold_rpm))
-    fprintf(out, "\n  threshold speed  %.5g rpm (by eigenvalues %.5g)\n", r->threshold_rpm,
+    fprintf(out, "\n  threshold speed  %.0f rpm (by eigenvalues %.0f)\n", r->threshold_rpm,
             r->threshold_eigen_rpm);
   if (isfinite(r->load_capacity_n))
     fprintf(out, "  load capacity    %.4g N at this speed\n", r->load_capacity_n);
   if (isfinite(r->lift_off_rpm))
-    fprintf(out, "  lift-off         %.4g rpm under this load\n", r->lift_off_rpm);
+    fprintf(out, "  lift-off         %.0f rpm under this load\n", r->lift_off_rpm);
   put_orbit(out, r);
   put_sensitivities(out, r);
   put_draws(out, r);

@@ -123,12 +123,12 @@ static void note_lift_off(const fg_film_report *r, char *note) {
   const fg_film_lift_off *l = &r->lift_off;
   if (isnan(l->shift_um)) {
     snprintf(note, FG_FILM_NOTE,
-             "No clearance within 0.6 of C of this bearing's lifts off at %.4g rpm under %.4g N.",
+             "No clearance within 0.6 of C of this bearing's lifts off at %.0f rpm under %.4g N.",
              l->rpm, r->options.load_n);
     return;
   }
   snprintf(note, FG_FILM_NOTE,
-           "Measured lift-off at %.4g rpm (model: %.4g): of clearances %.2g ± %.2g um %s, "
+           "Measured lift-off at %.0f rpm (model: %.0f): of clearances %.2g ± %.2g um %s, "
            "%.4g um in the mean. It %s the bearing's clearance as stated (U %.2g um).",
            l->rpm, l->predicted_rpm, fabs(l->shift_um), 2 * l->u_shift_um,
            l->shift_um < 0 ? "closer" : "wider", l->clearance_um,
@@ -140,7 +140,7 @@ size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_
   size_t count = 0;
   if (r->at.outcome == FG_FILM_UNSOLVED)
     snprintf(notes[count++], FG_FILM_NOTE,
-             "No steady film was found under these foils: at %.4g N and %.4g rpm the rotor rests "
+             "No steady film was found under these foils: at %.4g N and %.6g rpm the rotor rests "
              "on them, or the load is carried where the model ends.",
              o->load_n, o->speed_rpm);
   else
