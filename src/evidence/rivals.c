@@ -5,12 +5,11 @@
 #include <string.h>
 
 #include "effect/midline.h"
+#include "evidence/glass_fields.h"
 #include "evidence/line.h"
 
-/* Highest total degree of a field over both axes; harmonics of a ring, from 2 on; of the edge's
- * direction; polynomials of a bump, from 3 on. */
+/* Harmonics of a ring, from 2 on; of the edge's direction; polynomials of a bump, from 3 on. */
 enum {
-  DEGREE = 8,
   RING_LAST = 9,
   DIRECTION_LAST = 9,
   DISCS_MAX = 8,
@@ -23,24 +22,10 @@ enum {
   PERIOD_LAST = 4
 };
 
-/* Products of degree 1, each of which moves x or y. */
-enum { LINEAR = 4 };
-
-/* Scales and shears have names, which discs show apart; on a foil its circles follow them. */
-static void leave_out_linear(const fg_edge_fit *edge_fit, size_t count, double *variance) {
-  if (edge_fit->discs) memset(variance, 0, count * sizeof *variance);
-}
-
-static fg_line line_of_axis(const fg_field_frame *frame, int axis) {
-  return fg_line_over(frame->first_mm[axis], frame->last_mm[axis]);
-}
-
 static fg_line line_of_foil(const fg_edge_fit *edge_fit) {
   double radius = edge_fit->parts[0].overall_radius_mm;
   return fg_line_over(edge_fit->psi_rad[0] * radius, edge_fit->psi_rad[1] * radius);
 }
-
-/* ---- of the scanner ---- */
 
 size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
                         const fg_edge_fit_row *row, double *values) {
@@ -55,115 +40,6 @@ size_t fg_rival_columns(const fg_rival *rival, const fg_edge_fit *edge_fit,
                   (d[c].x * row->normal.x + d[c].y * row->normal.y) / FG_EDGE_FIT_PLACES;
   }
   return count;
-}
-
-#define OVER_LINE(name, over, moved_x, moved_y)                                                    \
-  static size_t name##_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {              \
-    double values[FG_LINE_COLUMNS];                                                                \
-    const fg_line l = line_of_axis(frame, over);                                                   \
-    fg_line_fill(&l, fg_point_along(at, over), values);                                            \
-    for (size_t c = 0; c < FG_LINE_COLUMNS; c++)                                                   \
-      d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
-    return FG_LINE_COLUMNS;                                                                        \
-  }
-OVER_LINE(x_over_x, 0, 1, 0)
-OVER_LINE(y_over_x, 0, 0, 1)
-OVER_LINE(x_over_y, 1, 1, 0)
-OVER_LINE(y_over_y, 1, 0, 1)
-
-static bool x_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  const fg_line l = line_of_axis(&edge_fit->frame, 0);
-  if (!fg_line_variances(&l, 1, i, variance)) return false;
-  leave_out_linear(edge_fit, 1, variance + FG_LINE_SINES);
-  return true;
-}
-
-static bool y_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  const fg_line l = line_of_axis(&edge_fit->frame, 1);
-  if (!fg_line_variances(&l, 1, i, variance)) return false;
-  leave_out_linear(edge_fit, 1, variance + FG_LINE_SINES);
-  return true;
-}
-
-static void fill_legendre(double u, size_t count, double *values) {
-  values[0] = 1;
-  values[1] = u;
-  for (size_t n = 1; n + 1 < count; n++)
-    values[n + 1] =
-        ((2 * (double)n + 1) * u * values[n] - (double)n * values[n - 1]) / ((double)n + 1);
-}
-
-/* Products of Legendre polynomials by total degree, 1 to DEGREE; each moves x, then y. */
-static size_t plane_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {
-  const fg_line x = line_of_axis(frame, 0), y = line_of_axis(frame, 1);
-  double px[DEGREE + 1], py[DEGREE + 1];
-  fill_legendre((at.x - x.middle) / x.half, DEGREE + 1, px);
-  fill_legendre((at.y - y.middle) / y.half, DEGREE + 1, py);
-  size_t count = 0;
-  for (int degree = 1; degree <= DEGREE; degree++)
-    for (int i = 0; i <= degree; i++) {
-      double value = px[i] * py[degree - i];
-      d[count++] = (fg_point){value, 0};
-      d[count++] = (fg_point){0, value};
-    }
-  return count;
-}
-
-static bool plane_variances(const fg_edge_fit *edge_fit, size_t length, double *variance) {
-  static const double falls[] = {0.1, 0.2, 0.35, 0.5, 0.65, 0.8};
-  if (length >= sizeof falls / sizeof *falls) return false;
-  size_t count = 0;
-  for (int degree = 1; degree <= DEGREE; degree++)
-    for (int i = 0; i < 2 * (degree + 1); i++)
-      variance[count++] = pow(falls[length], 2 * (degree - 1)) / (degree + 1);
-  leave_out_linear(edge_fit, LINEAR, variance);
-  return true;
-}
-
-/* Maps of the glass that one cause makes: a product of powers that moves x or y, a lens, a tilt of
- * the glass about either axis. Each with the products of degree 1, which its middle makes, and with
- * two that the middle of a lens makes. */
-enum { PRODUCTS_FIRST = 2, PRODUCTS_LAST = 3, MAP_COLUMNS = LINEAR + 3 };
-#define MIDDLE_SHARE 0.3 /* of a lens: distance of its middle over the picture's half */
-
-static size_t add_map(const fg_point linear[LINEAR], fg_point one, fg_point second, fg_point third,
-                      fg_point *d) {
-  memcpy(d, linear, LINEAR * sizeof *d);
-  d[LINEAR] = one;
-  d[LINEAR + 1] = second;
-  d[LINEAR + 2] = third;
-  return MAP_COLUMNS;
-}
-
-static size_t maps_glass(const fg_field_frame *frame, fg_point at, fg_point *d) {
-  const fg_line lx = line_of_axis(frame, 0), ly = line_of_axis(frame, 1);
-  const double half = fmax(lx.half, ly.half), x = (at.x - lx.middle) / half;
-  const double y = (at.y - ly.middle) / half;
-  const fg_point linear[LINEAR] = {{x, 0}, {0, x}, {y, 0}, {0, y}}, none = {0, 0};
-  size_t count = 0;
-  for (int degree = PRODUCTS_FIRST; degree <= PRODUCTS_LAST; degree++)
-    for (int i = 0; i <= degree; i++) {
-      double value = pow(x, i) * pow(y, degree - i);
-      count += add_map(linear, (fg_point){value, 0}, none, none, d + count);
-      count += add_map(linear, (fg_point){0, value}, none, none, d + count);
-    }
-  count += add_map(linear, (fg_point){x * (x * x + y * y), y * (x * x + y * y)},
-                   (fg_point){3 * x * x + y * y, 2 * x * y},
-                   (fg_point){2 * x * y, x * x + 3 * y * y}, d + count);
-  count += add_map(linear, (fg_point){x * x, x * y}, none, none, d + count);
-  return count + add_map(linear, (fg_point){x * y, y * y}, none, none, d + count);
-}
-
-static bool map_variances(const fg_edge_fit *edge_fit, size_t i, double *variance) {
-  for (int c = 0; c < MAP_COLUMNS; c++)
-    variance[c] = c <= LINEAR ? 1 : MIDDLE_SHARE * MIDDLE_SHARE;
-  leave_out_linear(edge_fit, LINEAR, variance);
-  return i == 0;
-}
-
-static size_t map_columns(const fg_edge_fit *edge_fit) {
-  (void)edge_fit;
-  return MAP_COLUMNS;
 }
 
 /* ---- of the part ---- */
@@ -391,35 +267,45 @@ const fg_rival fg_rivals[] = {
     {.name = "scan.x.dx",
      .coordinate = FG_EFFECT_X,
      .moves = "x",
-     .glass = x_over_x_glass,
-     .variances = x_variances},
+     .glass = fg_glass_x_over_x,
+     .variances = fg_glass_x_variances},
     {.name = "scan.x.dy",
      .coordinate = FG_EFFECT_X,
      .moves = "y",
-     .glass = y_over_x_glass,
-     .variances = x_variances},
+     .glass = fg_glass_y_over_x,
+     .variances = fg_glass_x_variances},
     {.name = "scan.y.dx",
      .coordinate = FG_EFFECT_Y,
      .moves = "x",
-     .glass = x_over_y_glass,
-     .variances = y_variances},
+     .glass = fg_glass_x_over_y,
+     .variances = fg_glass_y_variances},
     {.name = "scan.y.dy",
      .coordinate = FG_EFFECT_Y,
      .moves = "y",
-     .glass = y_over_y_glass,
-     .variances = y_variances},
+     .glass = fg_glass_y_over_y,
+     .variances = fg_glass_y_variances},
+    {.name = "scan.y of stretched lines",
+     .coordinate = FG_EFFECT_Y,
+     .moves = "x and y",
+     .glass = fg_glass_stretched_lines,
+     .variances = fg_glass_stretched_variances},
+    {.name = "scan.y of rigid lines",
+     .coordinate = FG_EFFECT_Y,
+     .moves = "x and y",
+     .glass = fg_glass_rigid_lines,
+     .variances = fg_glass_rigid_variances},
     {.name = "scan.xy",
      .coordinate = FG_EFFECT_Y,
      .moves = "x and y",
-     .glass = plane_glass,
-     .variances = plane_variances,
+     .glass = fg_glass_plane,
+     .variances = fg_glass_plane_variances,
      .loose = true},
     {.name = "scan.xy of one map",
      .coordinate = FG_EFFECT_Y,
      .moves = "x and y",
-     .glass = maps_glass,
-     .variances = map_variances,
-     .stretch = map_columns},
+     .glass = fg_glass_maps,
+     .variances = fg_glass_map_variances,
+     .stretch = fg_glass_map_columns},
     {.name = "foil.s",
      .coordinate = FG_EFFECT_FOIL,
      .columns = over_foil,
@@ -459,7 +345,8 @@ const fg_rival fg_rivals[] = {
     {.name = "bump.each",
      .coordinate = FG_EFFECT_INDEX,
      .columns = over_each,
-     .variances = each_variances},
+     .variances = each_variances,
+     .loose = true},
     {.name = "bump.each of one bump",
      .coordinate = FG_EFFECT_INDEX,
      .columns = over_each,

@@ -294,6 +294,25 @@ static const fg_evidence_model *find_nameless(const fg_evidence_search *s, doubl
   return best;
 }
 
+/* Returns the fewest pieces of the sets in a tie; 0: one of them has no name. */
+static size_t fewest_pieces(const fg_evidence_verdict *v) {
+  size_t fewest = FG_EVIDENCE_PARTS;
+  for (size_t k = 0; k < v->ties; k++) {
+    size_t pieces = fg_evidence_is_named(&v->tie[k]) ? count_pieces(&v->tie[k]) : 0;
+    fewest = pieces < fewest ? pieces : fewest;
+  }
+  return fewest;
+}
+
+/* Returns the model without a name of which so many named causes may be the pieces; NULL: there is
+ * none. Of two it is one of fewer causes that explains as well, up to errors of the columns. */
+static const fg_evidence_model *find_rival_of_pieces(const fg_evidence_search *s, size_t pieces,
+                                                     double margin) {
+  if (pieces >= PIECES) return find_unnamed(s);
+  const fg_evidence_model *nameless = find_nameless(s, margin);
+  return nameless && nameless->parts < pieces ? nameless : NULL;
+}
+
 /* Names beside what has none are no evidence where that explains as well alone, up to errors of the
  * columns: they are pieces of it. */
 static tie_range choose_range(const fg_evidence_search *s, double named, double margin) {
@@ -345,9 +364,8 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
   FG_TRY(list_ties(ctx, s, &range, v));
   if (!v->ties) take_likeliest_rivals(s, v);
   if (isfinite(named)) put_named_first(v);
-  const fg_evidence_model *unnamed = find_unnamed(s);
-  if (isfinite(named) && v->ties == 1 && count_pieces(&v->tie[0]) >= PIECES && unnamed)
-    add_tie(unnamed, v);
+  const fg_evidence_model *unnamed = find_rival_of_pieces(s, fewest_pieces(v), margin);
+  if (isfinite(named) && unnamed && v->ties < FG_EVIDENCE_TIES) add_tie(unnamed, v);
   v->outcome = !isfinite(named) ? FG_EVIDENCE_UNATTRIBUTED
                : v->ties > 1    ? FG_EVIDENCE_TIED
                                 : FG_EVIDENCE_FOUND;

@@ -115,7 +115,7 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
   }
   for (size_t k = 0; k < v->ties; k++)
     add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score, NULL, to);
-  if (v->outcome == FG_EVIDENCE_UNATTRIBUTED && v->tie[0].named)
+  if (v->tie[0].named && !fg_evidence_is_named(&v->tie[0]))
     add_explanation(edge_fit, &v->tie[0], v->middle_mm[0], v->tie[0].score, v->certain, to);
   to->p_value = fmin(to->p_value, fmax(v->p_null, DBL_MIN));
 }

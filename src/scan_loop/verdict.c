@@ -149,7 +149,14 @@ static fg_status fill_claim(fg_context *ctx, const fg_scan_loop *loop,
   return fg_scan_result_put_shape(ctx, loop, effect, claim);
 }
 
-static void put_width_claim(const fg_width_effect *from, fg_scan_result_claim *claim) {
+/* Returns true where the scanner does what nobody has named: it stretches the strip as well. */
+static bool holds_nameless_scanner(const fg_effect_set *set) {
+  for (size_t i = 0; i < set->count; i++)
+    if (fg_effect_is_free(set->effects[i].kind) && set->effects[i].kind->glass) return true;
+  return false;
+}
+
+static void put_width_claim(const fg_width_effect *from, bool sure, fg_scan_result_claim *claim) {
   const fg_effect *kind = from->effect.kind;
   *claim = (fg_scan_result_claim){
       .id = kind->id,
@@ -157,8 +164,8 @@ static void put_width_claim(const fg_width_effect *from, fg_scan_result_claim *c
       .equation = kind->equation,
       .says = kind->says[fg_effect_found_amplitude(&from->effect) < 0],
       .of_width = true,
-      .sure = true,
-      .verdict = FG_LOOP_FOUND,
+      .sure = sure,
+      .verdict = sure ? FG_LOOP_FOUND : FG_LOOP_TIED,
       .coordinate = (fg_scan_coordinate)kind->coordinate,
       .coordinate_name = fg_effect_coordinate_name(kind->coordinate),
       .amplitude_um = fg_effect_found_amplitude(&from->effect),
@@ -169,9 +176,12 @@ static void put_width_claim(const fg_width_effect *from, fg_scan_result_claim *c
   claim->parameters = fg_scan_result_put_parameters(&from->effect, claim->parameter);
 }
 
-static void put_width(const fg_width_findings *width, fg_scan_result *result) {
+static void put_width(const fg_width_findings *width, const fg_effect_set *set,
+                      fg_scan_result *result) {
+  bool sure = !holds_nameless_scanner(set);
   for (size_t e = 0; e < width->count; e++)
-    if (width->each[e].found) put_width_claim(&width->each[e], &result->claim[result->claims++]);
+    if (width->each[e].found)
+      put_width_claim(&width->each[e], sure, &result->claim[result->claims++]);
   result->of_width = width->found > 0;
   result->width_before_um = width->rms_before_um;
   result->width_after_um = width->rms_after_um;
@@ -329,7 +339,7 @@ fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_result_put_noise(ctx, loop, result));
   put_explanations(&loop->explanations, result);
   FG_TRY(put_claims(ctx, loop, result));
-  put_width(&loop->width, result);
+  put_width(&loop->width, &loop->set, result);
   fill_unclaimed(loop, result);
   put_width_unclaimed(&loop->width, result);
   put_advice(loop, result);

@@ -69,8 +69,11 @@ def make_scanner(name, index, seed):
 def find_model(program, folder, path):
     """(path of the model or None, the report or None)."""
     model, report = os.path.join(folder, "model.json"), os.path.join(folder, "loop.json")
-    command = [program, "loop", path, "--form", "discs", "-o", report, "--model-out", model]
-    subprocess.run(command, stderr=subprocess.DEVNULL)
+    command = [program, "loop", path, "--form", "discs", "-o", report]
+    # No model is written of a picture that once was a JPEG, and no report with it.
+    for more in (["--model-out", model], []):
+        if not os.path.exists(report):
+            subprocess.run([*command, *more], stderr=subprocess.DEVNULL)
     if not os.path.exists(report):
         return None, None
     with open(report, encoding="utf-8") as f:

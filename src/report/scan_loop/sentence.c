@@ -170,8 +170,9 @@ static fg_status append_width(fg_context *ctx, const fg_scan_result *result, cha
     const fg_scan_result_parameter *p = &claim->parameter[0];
     if (!claim->of_width) continue;
     fg_scan_loop_value_words(p->told, p->u_told, value, sizeof value);
-    FG_TRY(fg_text_append(ctx, text, " In the strip's width: %s (%s = %s %s). ",
-                          claim->says ? claim->says : claim->words, p->symbol, value, p->unit));
+    FG_TRY(fg_text_append(ctx, text, " In the strip's width: %s (%s = %s %s)%s. ",
+                          claim->says ? claim->says : claim->words, p->symbol, value, p->unit,
+                          claim->sure ? "" : ", or the scanner's shift stretches it so"));
     FG_TRY(say_chance(ctx, claim->p_value, text));
   }
   fg_scan_loop_length_words(result->width_before_um, before, sizeof before);
