@@ -242,27 +242,37 @@ exit:
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-/* The two last steps, which do not need each other. */
+/* The last steps, which do not need each other. */
 typedef struct last_steps {
   const fg_edge_work *work;
   const fg_edge_options *options;
   fg_strip *strip;
 } last_steps;
 
-static fg_status describe_strip(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
-                                fg_strip *strip) {
-  FG_TRY(fg_picture_of_strip(ctx, work, &strip->picture));
-  strip->count = work->reference->count;
-  fill_stations(work, dpi, strip);
-  find_box(work->reference, strip);
-  fg_ends_measure(work, dpi, strip);
-  return summarise_strip(ctx, work, dpi, strip);
-}
+enum { PLACE_STRIP, SEE_PICTURE, FIND_PLAIN, LAST_STEPS };
 
 static fg_status take_last_step(fg_context *ctx, void *shared, size_t step) {
   const last_steps *steps = shared;
-  if (step == 0) return find_plain(ctx, steps->work, steps->options, steps->strip);
-  return describe_strip(ctx, steps->work, steps->options->dpi, steps->strip);
+  fg_strip *strip = steps->strip;
+  if (step == FIND_PLAIN) return find_plain(ctx, steps->work, steps->options, strip);
+  if (step == SEE_PICTURE) return fg_picture_of_strip(ctx, steps->work, &strip->picture);
+  strip->count = steps->work->reference->count;
+  fill_stations(steps->work, steps->options->dpi, strip);
+  find_box(steps->work->reference, strip);
+  fg_ends_measure(steps->work, steps->options->dpi, strip);
+  return FG_OK;
+}
+
+/* Describes the measured strip. */
+static fg_status finish_strip(fg_context *ctx, const fg_edge_work *work,
+                              const fg_edge_options *options, fg_strip *strip) {
+  last_steps steps = {work, options, strip};
+  bool is_plain = work->gamma == 1 && !work->driver;
+  size_t count = !is_plain && options->plain ? LAST_STEPS : FIND_PLAIN;
+  FG_TRY(fg_parallel_run(ctx, options->threads, count, take_last_step, &steps));
+  FG_TRY(summarise_strip(ctx, work, options->dpi, strip));
+  if (is_plain) copy_plain(work, strip, options->dpi, strip);
+  return FG_OK;
 }
 
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
@@ -271,7 +281,6 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   const double *dpi = options->dpi;
   fg_reference reference = {0};
   fg_edge_work work = begin_work(tiles, segmentation, trace, &reference, options);
-  last_steps steps = {&work, options, strip};
   fg_status status = FG_OK;
   FG_TRY_EXIT(build_reference(ctx, trace, dpi, &reference));
   FG_TRY_EXIT(allocate_work(ctx, &work));
@@ -280,13 +289,8 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   strip->facts = trace->facts;
   strip->picture = fg_picture_unknown();
   FG_TRY_EXIT(measure_edges(ctx, &work, &strip->facts));
-  bool is_plain = work.gamma == 1 && !work.driver;
   strip->plain_mm = strip->plain_blur_um = strip->plain_counts = NAN;
-  if (!is_plain && options->plain)
-    FG_TRY_EXIT(fg_parallel_run(ctx, options->threads, 2, take_last_step, &steps));
-  else
-    FG_TRY_EXIT(describe_strip(ctx, &work, dpi, strip));
-  if (is_plain) copy_plain(&work, strip, dpi, strip);
+  FG_TRY_EXIT(finish_strip(ctx, &work, options, strip));
 exit:
   fg_reference_free(&reference);
   if (work.start) free_work(work.start);
