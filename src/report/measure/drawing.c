@@ -177,13 +177,17 @@ static fg_status draw_bump(fg_context *ctx, fg_canvas *canvas, const fg_foil *fo
   return fg_canvas_text(ctx, canvas, at, 12, 0.5, FG_COLOUR_TEXT, number);
 }
 
-static fg_status draw_overall(fg_context *ctx, fg_canvas *canvas, const fg_overall *overall) {
+/* The letter stands on the foil's side of the centre: the other may lie beyond the picture. */
+static fg_status draw_overall(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil) {
+  const fg_overall *overall = &foil->overall;
   const fg_circle circle = {overall->centre_mm.x, overall->centre_mm.y, overall->radius_mm};
   if (!isfinite(circle.x + circle.y + circle.radius)) return FG_OK;
   FG_TRY(fg_canvas_arc(ctx, canvas, &circle, 0, 2 * pi, (fg_pen){FG_COLOUR_OVERALL, 0.9, 8}));
   FG_TRY(draw_cross(ctx, canvas, overall->centre_mm, 0.5, FG_COLOUR_OVERALL));
-  fg_point at =
-      offset(overall->centre_mm, (fg_point){0, 1}, 22 * canvas->unit_px / canvas->px_per_mm[1]);
+  bool below =
+      foil->strip.count && midpoint(&foil->strip.stations[foil->strip.count / 2]).y > circle.y;
+  fg_point at = offset(overall->centre_mm, (fg_point){0, below ? 1 : -1},
+                       22 * canvas->unit_px / canvas->px_per_mm[1]);
   return fg_canvas_text(ctx, canvas, at, 11, 0.5, FG_COLOUR_TEXT, "O");
 }
 
@@ -212,7 +216,7 @@ static fg_status draw_foil(fg_context *ctx, fg_canvas *canvas, const fg_foil *fo
   FG_TRY(draw_edges(ctx, canvas, &foil->strip));
   if (foil->flags & FG_FOIL_NOT_MEASURED) return FG_OK;
   FG_TRY(draw_whiskers(ctx, canvas, foil, magnification));
-  FG_TRY(draw_overall(ctx, canvas, &foil->overall));
+  FG_TRY(draw_overall(ctx, canvas, foil));
   FG_TRY(draw_ends(ctx, canvas, foil));
   for (size_t i = 0; i < foil->bump_count; i++)
     FG_TRY(draw_bump(ctx, canvas, foil, &foil->bumps[i]));
