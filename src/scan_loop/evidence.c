@@ -141,6 +141,36 @@ static bool has_converged(const fg_scan_loop *loop) {
          fg_edge_fit_weighted_square(edge_fit, loop->residual_before); /* false for NaN */
 }
 
+/* Returns true for a named effect whose numbers are 0 within U: linear columns asked for it, the
+ * fit does not. */
+static bool is_nothing(const fg_effect_found *effect) {
+  for (size_t c = 0; c < effect->columns; c++)
+    if (!(fabs(effect->coefficient_um[c]) < 2 * effect->u_coefficient_um[c])) return false;
+  return effect->columns > 0 && !fg_effect_is_free(effect->kind);
+}
+
+static void leave_out_nothings(const fg_effect_set *set, fg_explanations *explanations) {
+  for (size_t e = 0; e < set->count; e++)
+    for (size_t c = 0; is_nothing(&set->effects[e]) && c < explanations->candidate_count; c++)
+      if (explanations->candidates[c].kind == set->effects[e].kind)
+        explanations->each[0].mask &= ~(1u << c);
+}
+
+/* Leaves such effects out of the only explanation, unless nothing else is in it. */
+static fg_status drop_nothings(fg_context *ctx, fg_scan_loop *loop) {
+  const fg_effect_set all = loop->set;
+  fg_effect_set some = {.count = 0};
+  for (size_t e = 0; e < all.count; e++)
+    if (!is_nothing(&all.effects[e])) some.effects[some.count++] = all.effects[e];
+  if (loop->explanations.count > 1 || !some.count || some.count == all.count) return FG_OK;
+  fg_status status = fg_joint_fit(ctx, &loop->edge_fit, &some, loop->residual_after);
+  if (status == FG_ERR_NUMERIC)
+    return fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
+  loop->set = some;
+  leave_out_nothings(&all, &loop->explanations);
+  return status;
+}
+
 /* Fits the likeliest explanation; the explanations so far stay where it cannot be fitted. */
 static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evidence_verdict *v,
                               bool *moved) {
@@ -162,6 +192,7 @@ static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evid
   if (status == FG_OK) {
     loop->set = set;
     loop->explanations = next;
+    status = drop_nothings(ctx, loop);
   } else if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
     status = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
