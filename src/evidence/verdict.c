@@ -372,3 +372,13 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
   if (v->outcome == FG_EVIDENCE_UNATTRIBUTED) find_certain(s, margin, v);
   return FG_OK;
 }
+
+bool fg_evidence_take_nameless(const fg_evidence_search *s, fg_evidence_verdict *v) {
+  const fg_evidence_model *unnamed = find_unnamed(s);
+  if (!unnamed) return false;
+  v->ties = 0;
+  v->outcome = FG_EVIDENCE_UNATTRIBUTED;
+  memset(v->certain, 0, sizeof v->certain);
+  add_tie(unnamed, v);
+  return true;
+}

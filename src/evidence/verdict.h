@@ -36,4 +36,8 @@ bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_mode
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search, bool far,
                              fg_evidence_verdict *verdict);
 
+/* Takes the likeliest explanation without a name in place of one that cannot be fitted; returns
+ * false where there is none. */
+bool fg_evidence_take_nameless(const fg_evidence_search *search, fg_evidence_verdict *verdict);
+
 #endif

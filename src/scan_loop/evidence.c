@@ -171,35 +171,52 @@ static fg_status drop_nothings(fg_context *ctx, fg_scan_loop *loop) {
   return status;
 }
 
-/* Fits the likeliest explanation; the explanations so far stay where it cannot be fitted. */
+/* Fits the likeliest explanation. FG_ERR_NUMERIC where it cannot be fitted: the one before stays.
+ */
+static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_set *set) {
+  size_t numbers = fg_edge_fit_geometry_size(&loop->edge_fit);
+  double *geometry = NULL;
+  FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
+  fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
+  fg_status status = fg_joint_fit(ctx, &loop->edge_fit, set, loop->residual_after);
+  if (status == FG_OK && !has_converged(loop)) status = FG_ERR_NUMERIC;
+  if (status == FG_ERR_NUMERIC) {
+    fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
+    fg_status before = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
+    if (before != FG_OK) status = before;
+  }
+  free(geometry);
+  return status;
+}
+
+/* Takes what the evidence says, with the likeliest explanation fitted. FG_ERR_NUMERIC as above: the
+ * explanations so far stay. */
 static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evidence_verdict *v,
                               bool *moved) {
   fg_explanations next = loop->explanations;
   fg_effect_set set;
   put_verdict(&loop->edge_fit, v, &next);
   fg_search_take(&next, 0, &set);
-  *moved = !same_kinds(&set, &loop->set);
-  if (!*moved) {
+  *moved = false;
+  if (same_kinds(&set, &loop->set)) {
     loop->explanations = next;
     return FG_OK;
   }
-  size_t numbers = fg_edge_fit_geometry_size(&loop->edge_fit);
-  double *geometry = NULL;
-  FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
-  fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
-  fg_status status = fg_joint_fit(ctx, &loop->edge_fit, &set, loop->residual_after);
-  if (status == FG_OK && !has_converged(loop)) status = FG_ERR_NUMERIC;
-  if (status == FG_OK) {
-    loop->set = set;
-    loop->explanations = next;
-    status = drop_nothings(ctx, loop);
-  } else if (status == FG_ERR_NUMERIC) {
-    fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
-    status = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
-    *moved = false;
-  }
-  free(geometry);
-  return status;
+  FG_TRY(fit_explanation(ctx, loop, &set));
+  *moved = true;
+  loop->set = set;
+  loop->explanations = next;
+  return drop_nothings(ctx, loop);
+}
+
+/* A set of named effects that cannot be fitted is told as the likeliest one without a name. */
+static fg_status take_what_fits(fg_context *ctx, fg_scan_loop *loop,
+                                const fg_evidence_search *search, fg_evidence_verdict *v,
+                                bool *moved) {
+  fg_status status = take_verdict(ctx, loop, v, moved);
+  if (status == FG_ERR_NUMERIC && fg_evidence_take_nameless(search, v))
+    status = take_verdict(ctx, loop, v, moved);
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
 static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
@@ -367,7 +384,8 @@ static fg_status move_to_names(fg_context *ctx, fg_scan_loop *loop, fg_evidence_
   *moved = false;
   FG_TRY(fg_evidence_decide(ctx, search, true, &verdict));
   if (verdict.outcome != FG_EVIDENCE_FOUND && verdict.outcome != FG_EVIDENCE_TIED) return FG_OK;
-  return take_verdict(ctx, loop, &verdict, moved);
+  fg_status status = take_verdict(ctx, loop, &verdict, moved);
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
 static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residual, double *jacobian,
@@ -390,7 +408,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   loop->beside_foil_field = is_beside_foil_field(&loop->edge_fit, &verdict);
   FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
-  FG_TRY_EXIT(take_verdict(ctx, loop, &verdict, moved));
+  FG_TRY_EXIT(take_what_fits(ctx, loop, &search, &verdict, moved));
   *moved = *moved && search.problem.large;
 exit:
   fg_evidence_search_close(&search);
