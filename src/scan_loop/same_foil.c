@@ -118,12 +118,14 @@ static fg_status fail_two_foils(fg_context *ctx, const fg_scan_loop *loop, const
                  one ? one->radius_mm : NAN, one ? other->radius_mm : NAN);
 }
 
-/* Returns true where a geometry for each scan leaves nothing to explain: nothing beyond the noise,
- * or beyond the edge model's own error. */
+/* Returns true where a geometry for each scan leaves nothing to explain, and what one for all
+ * leaves beyond that is no error of the edge model itself. */
 static bool explains_all(const fg_scan_loop *loop, const apart *a) {
   double error2 = loop->edge_error_um * loop->edge_error_um;
+  double alone = mean_square(&a->edge_fit, a->residual_um);
+  double together = mean_square(&loop->edge_fit, loop->residual_after);
   if (has_curve(&a->set) || a->set.count > EFFECTS_MAX) return false;
-  return a->explanations.right || mean_square(&a->edge_fit, a->residual_um) <= error2;
+  return together - alone > error2 && (a->explanations.right || alone <= error2);
 }
 
 fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop) {
