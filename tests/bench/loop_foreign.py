@@ -177,7 +177,7 @@ def clean_noise(rows):
     noise = {}
     for edge in ("ideal", "rough"):
         for name in ("R0", "R", "h"):
-            sizes = [float(r[f"u_{name}_before"]) for r in rows if (r["cause"], r["edge"]) == ("clean", edge)]
+            sizes = [float(r[f"u_{name}_before"]) for r in rows if (r["cause"], r["edge"]) == ("clean", edge) and r["outcome"] != "error"]
             noise[edge, name] = np.median(sizes) if sizes else 0.0
     return noise
 
