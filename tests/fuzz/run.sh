@@ -26,7 +26,8 @@ mkdir -p "$kept"
 keep_small() {
   local corpus=build-fuzz/corpus/$1 fewer=build-fuzz/corpus/$1.new
   rm -rf "$fewer" && mkdir "$fewer"
-  "build-fuzz/fuzz/fuzz_$1" -merge=1 -rss_limit_mb=2048 -timeout=30 "$fewer" "tests/fuzz/corpus/$1" "$corpus" >/dev/null 2>&1 || return 0
+  "build-fuzz/fuzz/fuzz_$1" -merge=1 -rss_limit_mb=2048 -timeout=30 -artifact_prefix="$kept/$1-" "$fewer" "tests/fuzz/corpus/$1" \
+    "$corpus" >/dev/null 2>&1 || return 0
   find "$fewer" -type f -printf '%s %p\n' | sort -n | awk '(sum += $1) > 8 * 1048576 { print $2 }' | xargs -r rm
   rm -rf "$corpus" && mv "$fewer" "$corpus"
 }
