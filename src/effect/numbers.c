@@ -20,6 +20,12 @@ double fg_effect_found_amplitude(const fg_effect_found *effect) {
   return effect->columns == 1 ? effect->coefficient_um[0] : sqrt(square);
 }
 
+bool fg_effect_found_exceeds(const fg_effect_found *effect, double sigmas) {
+  for (size_t c = 0; c < effect->columns; c++)
+    if (!(fabs(effect->coefficient_um[c]) < sigmas * effect->u_coefficient_um[c])) return true;
+  return false;
+}
+
 double fg_effect_found_u(const fg_effect_found *effect) {
   double a = fabs(fg_effect_found_amplitude(effect)), sum = 0;
   if (effect->columns == 1) return effect->u_coefficient_um[0];

@@ -33,6 +33,8 @@ fg_status fg_effect_set_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
  * uncertainty. */
 double fg_effect_found_amplitude(const fg_effect_found *effect);
 double fg_effect_found_u(const fg_effect_found *effect);
+/* Returns true when one of its coefficients is not less than so many standard uncertainties. */
+bool fg_effect_found_exceeds(const fg_effect_found *effect, double sigmas);
 
 /* Reads name and value of parameter i for reports (amplitudes in um, scale and shear as ratios);
  * false when there are no more. A curve has none. */

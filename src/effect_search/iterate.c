@@ -88,23 +88,16 @@ exit:
   return status;
 }
 
-/* Returns true when an effect's numbers exceed its uncertainty. */
-static bool exceeds_uncertainty(const fg_effect_found *effect) {
-  for (size_t c = 0; c < effect->columns; c++)
-    if (!(fabs(effect->coefficient_um[c]) < THERE_SIGMAS * effect->u_coefficient_um[c]))
-      return true;
-  return false;
-}
-
 /* Drops effects that the fit reduced to nothing: a second ripple in place of the curvature of a
  * first one, or a smooth effect beside one whose shape has been found since. */
 static void drop_nothings(fg_effect_set *set) {
   size_t kept = 0, there = 0;
   for (size_t e = 0; e < set->count; e++)
-    there += exceeds_uncertainty(&set->effects[e]);
+    there += fg_effect_found_exceeds(&set->effects[e], THERE_SIGMAS);
   if (!there) return; /* each could go, but not all: they are collinear */
   for (size_t e = 0; e < set->count; e++)
-    if (exceeds_uncertainty(&set->effects[e])) set->effects[kept++] = set->effects[e];
+    if (fg_effect_found_exceeds(&set->effects[e], THERE_SIGMAS))
+      set->effects[kept++] = set->effects[e];
   set->count = kept;
 }
 

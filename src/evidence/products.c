@@ -47,51 +47,54 @@ void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, s
 
 /* ---- found ahead, by threads that write to places of their own ---- */
 
-typedef struct own_task {
+/* A search of all columns by chunks: each with those of its set, from `first` on, or, where it is
+ * `wanted`, with those that are given. */
+typedef struct column_task column_task;
+struct column_task {
   fg_evidence_problem *problem;
+  void (*find)(const column_task *task, size_t c);
   const size_t *first;
-} own_task;
+  const size_t *column;
+  size_t count;
+  const bool *wanted;
+};
 
-static fg_status find_own(fg_context *ctx, void *shared, size_t item) {
-  const own_task *task = shared;
-  fg_evidence_problem *p = task->problem;
-  size_t end = (item + 1) * AT_ONCE < p->count ? (item + 1) * AT_ONCE : p->count;
+static void find_own(const column_task *task, size_t c) {
   double product[FG_EVIDENCE_NEAR];
+  size_t first = task->first[c], count = c - first + 1;
+  if (count <= FG_EVIDENCE_NEAR) fg_evidence_products(task->problem, c, first, count, product);
+}
+
+static void find_wanted(const column_task *task, size_t c) {
+  double product;
+  for (size_t k = 0; task->wanted[c] && k < task->count; k++)
+    fg_evidence_products(task->problem, task->column[k], c, 1, &product);
+}
+
+static fg_status find_chunk(fg_context *ctx, void *shared, size_t item) {
+  const column_task *task = shared;
+  size_t all = task->problem->count, end = (item + 1) * AT_ONCE < all ? (item + 1) * AT_ONCE : all;
   (void)ctx;
   for (size_t c = item * AT_ONCE; c < end; c++)
-    if (c - task->first[c] < FG_EVIDENCE_NEAR)
-      fg_evidence_products(p, c, task->first[c], c - task->first[c] + 1, product);
+    task->find(task, c);
   return FG_OK;
+}
+
+static fg_status find_of_all(fg_context *ctx, column_task *task, unsigned threads) {
+  size_t chunks = (task->problem->count + AT_ONCE - 1) / AT_ONCE;
+  return fg_parallel_run(ctx, threads, chunks, find_chunk, task);
 }
 
 fg_status fg_evidence_find_own_products(fg_context *ctx, fg_evidence_problem *p,
                                         const size_t *first, unsigned threads) {
-  own_task task = {p, first};
-  return fg_parallel_run(ctx, threads, (p->count + AT_ONCE - 1) / AT_ONCE, find_own, &task);
-}
-
-typedef struct products_task {
-  fg_evidence_problem *problem;
-  const size_t *column;
-  size_t count;
-  const bool *wanted;
-} products_task;
-
-static fg_status find_some(fg_context *ctx, void *shared, size_t item) {
-  const products_task *task = shared;
-  fg_evidence_problem *p = task->problem;
-  size_t end = (item + 1) * AT_ONCE < p->count ? (item + 1) * AT_ONCE : p->count;
-  double product;
-  (void)ctx;
-  for (size_t c = item * AT_ONCE; c < end; c++)
-    for (size_t k = 0; task->wanted[c] && k < task->count; k++)
-      fg_evidence_products(p, task->column[k], c, 1, &product);
-  return FG_OK;
+  column_task task = {.problem = p, .find = find_own, .first = first};
+  return find_of_all(ctx, &task, threads);
 }
 
 fg_status fg_evidence_find_products(fg_context *ctx, fg_evidence_problem *p, const size_t *column,
                                     size_t count, const bool *wanted, unsigned threads) {
-  products_task task = {p, column, count, wanted};
+  column_task task = {
+      .problem = p, .find = find_wanted, .column = column, .count = count, .wanted = wanted};
   double product;
   /* Memory and the products among the columns themselves, of which two threads would write. */
   for (size_t a = 0; a < count; a++) {
@@ -99,5 +102,5 @@ fg_status fg_evidence_find_products(fg_context *ctx, fg_evidence_problem *p, con
     for (size_t b = 0; b <= a; b++)
       fg_evidence_products(p, column[a], column[b], 1, &product);
   }
-  return fg_parallel_run(ctx, threads, (p->count + AT_ONCE - 1) / AT_ONCE, find_some, &task);
+  return find_of_all(ctx, &task, threads);
 }

@@ -144,9 +144,9 @@ static bool has_converged(const fg_scan_loop *loop) {
 /* Returns true for a named effect whose numbers are 0 within U: linear columns asked for it, the
  * fit does not. */
 static bool is_nothing(const fg_effect_found *effect) {
-  for (size_t c = 0; c < effect->columns; c++)
-    if (!(fabs(effect->coefficient_um[c]) < 2 * effect->u_coefficient_um[c])) return false;
-  return effect->columns > 0 && !fg_effect_is_free(effect->kind);
+  const double sigmas = 2;
+  return effect->columns > 0 && !fg_effect_is_free(effect->kind) &&
+         !fg_effect_found_exceeds(effect, sigmas);
 }
 
 static void leave_out_nothings(const fg_effect_set *set, fg_explanations *explanations) {
