@@ -128,13 +128,20 @@ typedef struct fg_film_result {
   double eccentricity; /* over the reference clearance */
   double attitude_deg;
   double min_film_um, min_film_deg, max_pressure_kpa, power_w;
-  double critical_mass_kg;  /* infinite: stable at every mass */
+  double critical_mass_kg;  /* infinite: stable at every mass; 0: unstable at every mass */
+  double stable_again_kg;   /* heavier rotors do not whirl; infinite: all above the critical mass do
+                             */
   double whirl_ratio;       /* of the whirl at the critical mass, over the speed */
   double log_decrement;     /* of the rotor's least stable whirl; NaN: not asked, or none */
   double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
   fg_film_side side;
   size_t draw; /* its number, from 1; 0: no drawn bearing */
 } fg_film_result;
+
+/* Returns true for a rotor that does not whirl on a bearing at its speed; false where unsolved. */
+static inline bool fg_film_is_stable(const fg_film_result *result, double mass_kg) {
+  return mass_kg < result->critical_mass_kg || mass_kg > result->stable_again_kg;
+}
 
 /* Stiffness and damping at one frequency of whirl; xx, xy, yx, yy. */
 typedef struct fg_film_coefficients {

@@ -123,10 +123,11 @@ fg_status fg_film_eigenvalues(fg_context *ctx, fg_film *film, const fg_film_case
                               double complex s, const double complex *near,
                               double complex value[FG_FILM_ROOTS]);
 
-/* The mass (of `M omega² C / (p_a R²)`) at which the rotor on this film begins to whirl, and the
- * ratio of whirl; infinite, and NaN, where none does between the ratios. */
+/* The mass (of `M omega² C / (p_a R²)`) at which the rotor on this film begins to whirl, 0 where
+ * every rotor does, and the ratio of whirl; infinite, and NaN, where none does between the ratios.
+ * Rotors heavier than `stable_again` do not whirl (infinite: all do). */
 typedef struct fg_film_threshold {
-  double mass, ratio;
+  double mass, stable_again, ratio;
 } fg_film_threshold;
 fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                  const fg_film_state *state, fg_film_threshold *threshold);

@@ -11,7 +11,7 @@
 #include "foilgauge/memory.h"
 #include "foilgauge/version.h"
 
-enum { LINE_MAX_BYTES = 1024, RESULT_NUMBERS = 14 };
+enum { LINE_MAX_BYTES = 1024, RESULT_NUMBERS = 15 };
 static const char heading[] = "foilgauge film draws ";
 
 static void add_to_sum(struct sha256_ctx *sum, double value) {
@@ -69,13 +69,12 @@ static void sum_up(const fg_film_report *r, const fg_film_bearing *perfect,
 
 /* The numbers of a line, in its order. */
 static void list_result_numbers(fg_film_result *result, double *numbers[RESULT_NUMBERS]) {
-  double *const all[RESULT_NUMBERS] = {&result->speed_rpm,         &result->compressibility,
-                                       &result->place_um[0],       &result->place_um[1],
-                                       &result->eccentricity,      &result->attitude_deg,
-                                       &result->min_film_um,       &result->min_film_deg,
-                                       &result->max_pressure_kpa,  &result->power_w,
-                                       &result->critical_mass_kg,  &result->whirl_ratio,
-                                       &result->mass_over_perfect, NULL};
+  double *const all[RESULT_NUMBERS] = {
+      &result->speed_rpm,         &result->compressibility,  &result->place_um[0],
+      &result->place_um[1],       &result->eccentricity,     &result->attitude_deg,
+      &result->min_film_um,       &result->min_film_deg,     &result->max_pressure_kpa,
+      &result->power_w,           &result->critical_mass_kg, &result->whirl_ratio,
+      &result->mass_over_perfect, &result->stable_again_kg,  NULL};
   memcpy(numbers, all, sizeof all);
 }
 

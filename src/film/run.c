@@ -87,6 +87,27 @@ bool fg_film_is_measured(const fg_film_options *options) {
   return options->bore || (options->foils && !fg_film_draws_from_lot(options));
 }
 
+/* From the lowest speed on, where the search for it ends, a measured lift-off is compared. */
+static fg_status find_limits(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
+  FG_TRY(fg_film_find_capacity(ctx, r, workspace));
+  return fg_film_hold_lift_off(ctx, r, workspace);
+}
+
+/* Studies of the bearing, to which the workspace's state belongs: each goes on from there. */
+static fg_status run_studies(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
+  typedef fg_status study(fg_context *, fg_film_report *, fg_film_workspace *);
+  static study *const studies[] = {fg_film_follow_orbit, fg_film_map_speeds, find_limits};
+  fg_status status = FG_OK;
+  fg_film_mark solved;
+  FG_TRY(fg_film_mark_open(ctx, workspace, &solved));
+  for (size_t i = 0; i < sizeof studies / sizeof *studies && status == FG_OK; i++) {
+    fg_film_mark_return(&solved, workspace);
+    status = studies[i](ctx, r, workspace);
+  }
+  fg_film_mark_close(&solved);
+  return status;
+}
+
 static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   fg_film_bearing perfect = r->bearing;
   FG_TRY(solve_perfect(ctx, r, workspace, &perfect));
@@ -108,10 +129,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   FG_TRY(find_modes(ctx, r, workspace));
   FG_TRY(find_coefficients(ctx, r, workspace));
   FG_TRY(keep_field(ctx, r, workspace));
-  FG_TRY(fg_film_follow_orbit(ctx, r, workspace));
-  FG_TRY(fg_film_map_speeds(ctx, r, workspace));
-  FG_TRY(fg_film_find_capacity(ctx, r, workspace));
-  return fg_film_hold_lift_off(ctx, r, workspace);
+  return run_studies(ctx, r, workspace);
 }
 
 fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,

@@ -70,7 +70,9 @@ static fg_status fill_result(fg_context *ctx, const fg_film_report *r, fg_film_w
   result->outcome =
       result->min_film_um < r->options.touching_um ? FG_FILM_TOUCHING : FG_FILM_SOLVED;
   FG_TRY(fg_film_find_threshold(ctx, &b->film, &b->at, &b->state, &threshold));
-  result->critical_mass_kg = threshold.mass * fg_film_mass_unit_kg(r, result->speed_rpm);
+  double unit_kg = fg_film_mass_unit_kg(r, result->speed_rpm);
+  result->critical_mass_kg = threshold.mass * unit_kg;
+  result->stable_again_kg = threshold.stable_again * unit_kg;
   result->whirl_ratio = threshold.ratio;
   return FG_OK;
 }
@@ -88,6 +90,7 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report, f
                              .max_pressure_kpa = NAN,
                              .power_w = NAN,
                              .critical_mass_kg = NAN,
+                             .stable_again_kg = NAN,
                              .whirl_ratio = NAN,
                              .log_decrement = NAN,
                              .mass_over_perfect = NAN};

@@ -12,11 +12,14 @@ static const double speed_close = 1e-4; /* of a threshold, relative */
 /* Above 0 where the rotor is stable at a speed. */
 typedef double stability_margin(const fg_film_report *, const fg_film_result *);
 
-/* Logarithm of the critical mass over the rotor's; a film that is stable at every mass counts as
- * one of a very large one, so that a root beside it can be found. */
+/* Logarithm of the critical mass over the rotor's, within limits, so that a root can be found
+ * beside a film on which no rotor whirls, or every one. */
 static double mass_margin(const fg_film_report *r, const fg_film_result *at) {
   static const double large = 5;
-  return fmin(large, log(at->critical_mass_kg / r->options.rotor_mass_kg));
+  double mass_kg = r->options.rotor_mass_kg, critical_kg = at->critical_mass_kg;
+  if (isnan(critical_kg)) return NAN;
+  double margin = fmax(log(critical_kg / mass_kg), log(mass_kg / at->stable_again_kg));
+  return fmax(-large, fmin(large, margin));
 }
 
 static double damping_margin(const fg_film_report *r, const fg_film_result *at) {

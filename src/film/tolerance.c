@@ -27,7 +27,7 @@ fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_wo
     double rpm = r->tolerance.threshold_rpm * (1 + share);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, rpm, FG_FILM_ONWARD, &at));
     if (at.outcome != FG_FILM_SOLVED) return FG_OK;
-    if (!(at.critical_mass_kg > r->options.rotor_mass_kg)) continue;
+    if (!fg_film_is_stable(&at, r->options.rotor_mass_kg)) continue;
     *side = i ? FG_FILM_WITHIN : FG_FILM_ABOVE;
     return FG_OK;
   }

@@ -2,9 +2,11 @@
 /* A rotor that whirls: impedance of the film, and the mass from which on it is unstable.
  *
  * A rigid rotor of mass M on this bearing moves as X exp(s tau): (M s² + Z(s)) X = 0 in units of
- * the speed. On the border of stability s = i nu, so that M nu² is an eigenvalue of Z(nu), real and
- * above 0 (Pan 1964: the film's equivalent stiffness, where its damping vanishes). Beyond it the
- * rotor is heavier: the smallest such mass counts. */
+ * the speed. On a border of stability s = i nu, so that M nu² is an eigenvalue of Z(nu), real and
+ * above 0 (Pan 1964: the film's equivalent stiffness, where its damping vanishes). Heavier rotors
+ * have one growing whirl more where the damping gets positive with the frequency there, one less
+ * where it gets negative. Where the equivalent stiffness is below 0 no rotor is light enough: it is
+ * a border at mass 0. */
 #include <math.h>
 
 #include "film/film.h"
@@ -72,6 +74,13 @@ fg_status fg_film_eigenvalues(fg_context *ctx, fg_film *film, const fg_film_case
   return FG_OK;
 }
 
+/* A mass from which on the rotor has one growing whirl more, or one less (`more` -1). */
+typedef struct border {
+  double mass, ratio;
+  int more;
+} border;
+enum { BORDERS_MAX = 8 };
+
 /* A stretch of ratios in which the imaginary part of eigenvalue `root` changes its sign. */
 typedef struct crossing {
   double low, high;
@@ -81,7 +90,7 @@ typedef struct crossing {
 
 /* Narrows it by false position (Illinois). */
 static fg_status refine_crossing(fg_context *ctx, fg_film *film, const fg_film_case *at,
-                                 crossing *c, fg_film_threshold *found) {
+                                 crossing *c, border *found) {
   double complex middle[FG_FILM_ROOTS] = {0};
   double f_low = cimag(c->at_low[c->root]), f_high = cimag(c->at_high[c->root]), ratio = c->low;
   int side = 0;
@@ -105,29 +114,62 @@ static fg_status refine_crossing(fg_context *ctx, fg_film *film, const fg_film_c
     if (fabs(moved) < ratio_close * ratio || f == 0) break;
   }
   double stiffness = creal(middle[c->root]);
-  *found = (fg_film_threshold){stiffness > 0 ? stiffness / (ratio * ratio) : INFINITY, ratio};
+  *found = (border){fmax(0, stiffness / (ratio * ratio)), ratio, f_high > 0 ? 1 : -1};
   return FG_OK;
+}
+
+/* Puts a border among the others, lighter ones first. */
+static void add_border(const border *found, border *borders, size_t *count) {
+  size_t place = *count;
+  if (*count == BORDERS_MAX) return;
+  while (place && borders[place - 1].mass > found->mass) {
+    borders[place] = borders[place - 1];
+    place--;
+  }
+  borders[place] = *found;
+  ++*count;
+}
+
+/* The lightest unstable rotor, and the heaviest of those that go on from it. */
+static fg_film_threshold read_borders(const border *borders, size_t count) {
+  fg_film_threshold threshold = {INFINITY, INFINITY, NAN};
+  int growing = 0;
+  for (size_t i = 0; i < count; i++) {
+    growing += borders[i].more;
+    if (i + 1 < count && borders[i + 1].mass == borders[i].mass) continue;
+    if (growing > 0 && isinf(threshold.mass)) {
+      threshold.mass = borders[i].mass;
+      threshold.ratio = borders[i].ratio;
+    }
+    if (growing <= 0 && isfinite(threshold.mass)) {
+      threshold.stable_again = borders[i].mass;
+      break;
+    }
+  }
+  return threshold;
 }
 
 fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                  const fg_film_state *state, fg_film_threshold *threshold) {
   double complex before[FG_FILM_ROOTS] = {0}, now[FG_FILM_ROOTS];
   double ratio_before = ratio_low;
-  *threshold = (fg_film_threshold){INFINITY, NAN};
+  border borders[BORDERS_MAX];
+  size_t count = 0;
   fg_film_assemble(ctx, film, at, state);
   for (int i = 0; i < RATIOS; i++) {
     double ratio = ratio_low * pow(ratio_high / ratio_low, (double)i / (RATIOS - 1));
     FG_TRY(fg_film_eigenvalues(ctx, film, at, I * ratio, i ? before : NULL, now));
     for (int k = 0; k < FG_FILM_ROOTS && i; k++) {
-      if (!(cimag(before[k]) < 0 && cimag(now[k]) >= 0)) continue;
+      if ((cimag(before[k]) < 0) == (cimag(now[k]) < 0)) continue;
       crossing c = {ratio_before, ratio, {before[0], before[1]}, {now[0], now[1]}, k};
-      fg_film_threshold found;
+      border found;
       FG_TRY(refine_crossing(ctx, film, at, &c, &found));
-      if (found.mass < threshold->mass) *threshold = found;
+      add_border(&found, borders, &count);
     }
     ratio_before = ratio;
     before[0] = now[0];
     before[1] = now[1];
   }
+  *threshold = read_borders(borders, count);
   return FG_OK;
 }

@@ -31,7 +31,7 @@ assert abs(force[0]) < 1e-4 and abs(force[1] + 20) < 1e-4, force
 assert min(x["film_um"] for x in r["field"]) == r["bearing"]["min_film_um"]
 d = r["draws"]
 assert d["solved"]["count"] == 25 and d["more_stable"]["count"] + d["less_stable"]["count"] == 25, d
-assert 0.1 < d["mass_over_perfect"]["at_5_pct"] < 1 < d["mass_over_perfect"]["at_75_pct"], d
+assert 0 <= d["mass_over_perfect"]["at_5_pct"] < 1 < d["mass_over_perfect"]["at_75_pct"], d
 assert r["coefficients"][10]["whirl_ratio"] == 1
 END
 
@@ -56,6 +56,30 @@ for e in r["eigenvalues"]:
 assert least["direction"] == "forward" and math.isclose(least["whirl_ratio"], r["bearing"]["whirl_ratio"], rel_tol=0.02)
 END
 
+# No rotor is light enough for a film whose equivalent stiffness is below 0: eigenvalues agree, and the threshold lies below lift-off.
+expect 0 "whirls as soon as it has lifted off" "$program" film design.json --load 20 --speed 20000 --clearance 80 --compliance 0.67 \
+  --mesh 6,8 --speeds 16837:19500:8 -o every.json --html every.html --table -
+checks - every.json <<'END' || fail "rotors of every mass"
+import json, sys
+r = json.load(open(sys.argv[1]))
+known = [s for s in r["speeds"] if s["stability"] and s["log_decrement"] is not None]
+for s in known:
+    assert (s["log_decrement"] > 0) == s["stability"].startswith("stable"), s
+words = {s["stability"] for s in known}
+assert {"stable at every mass", "unstable at every mass", "unstable"} <= words, words
+assert all((s["critical_mass_kg"] == 0) == (s["stability"] == "unstable at every mass") for s in known)
+assert r["threshold_rpm"] <= r["lift_off_rpm"] < 19500, r
+END
+# What is asked in between moves no limit of the bearing: the search for it begins at its own film.
+expect 0 "" "$program" film design.json --load 40 --speed 60000 --mesh 2,4 --speeds 50000:70000:2 -o few.json
+expect 0 "" "$program" film design.json --load 40 --speed 60000 --mesh 2,4 --speeds 30000:240000:9 -o many.json
+checks - <<'END' || fail "limits hang on the map of speeds"
+import json
+few, many = (json.load(open(name)) for name in ("few.json", "many.json"))
+assert few["load_capacity_n"] > 41 and few["lift_off_rpm"] < 55000, few
+assert (few["load_capacity_n"], few["lift_off_rpm"]) == (many["load_capacity_n"], many["lift_off_rpm"])
+END
+
 # Draws hang on their seed and number alone, and shims of no height are the perfect bearing.
 expect 0 "" "$program" film design.json $fast --speeds 30000:90000:2 --shims=-7:7 --draws 12 --jobs 1 -o few.json --draws-out few.csv
 [ "$(head -n 13 draws.csv)" = "$(cat few.csv)" ] || fail "draws hang on their number or on the threads"
@@ -64,14 +88,14 @@ near "no deviation" "$(value none.json "r['draws']['mass_over_perfect']['median'
 
 # A quantile between a bearing of a finite mass and one that is stable at every mass is none of a mass.
 expect 0 "" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 --speeds 120000:121000:2 \
-  --shims=-50:50 --draws 8 --seed 3 -o mixed.json
+  --shims=-50:50 --draws 8 --seed 7 -o mixed.json
 checks - <<'END' || fail "quantiles of masses are not right"
 import json
 q = json.load(open("mixed.json"))["draws"]["mass_over_perfect"]
 assert all(v is None or v < 1e6 for v in q.values()), q
 END
-expect 0 "median stable at every mass" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 \
-  --speeds 120000:121000:2 --shims=-50:50 --draws 8 --seed 3 --table -
+expect 0 "median 3.91, at 75 % stable at every mass" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 \
+  --speeds 120000:121000:2 --shims=-50:50 --draws 8 --seed 7 --table -
 
 # Draws that are kept: a run goes on from them, whatever line a kill has cut off; shards joined by cat are the whole; of other settings
 # they are refused.

@@ -14,16 +14,19 @@ static const fg_film_report *report_of(const fg_subject *subject) {
 
 /* ---- a bearing at one speed ---- */
 
-enum { STABLE, UNSTABLE, STABLE_AT_EVERY_MASS };
+enum { STABLE, UNSTABLE, STABLE_AT_EVERY_MASS, UNSTABLE_AT_EVERY_MASS };
 static const char *const stability_words[] = {[STABLE] = "stable",
                                               [UNSTABLE] = "unstable",
                                               [STABLE_AT_EVERY_MASS] = "stable at every mass",
+                                              [UNSTABLE_AT_EVERY_MASS] = "unstable at every mass",
                                               NULL};
 
 static int find_stability(const fg_film_report *report, const fg_film_result *result) {
   if (isnan(result->critical_mass_kg)) return -1;
   if (isinf(result->critical_mass_kg)) return STABLE_AT_EVERY_MASS;
-  return result->critical_mass_kg > report->options.rotor_mass_kg ? STABLE : UNSTABLE;
+  if (!(result->critical_mass_kg > 0) && isinf(result->stable_again_kg))
+    return UNSTABLE_AT_EVERY_MASS;
+  return fg_film_is_stable(result, report->options.rotor_mass_kg) ? STABLE : UNSTABLE;
 }
 
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result) {
@@ -96,7 +99,11 @@ static const fg_member result_rows[] = {
     {RESULT("power_loss_w", power_w, "loss,\nW", 3), .words = "of the film's shear"},
     {RESULT("critical_mass_kg", critical_mass_kg, "critical\nmass, kg", 4),
      .words = "mass on this bearing from which on the rotor whirls (Pan 1964); null also where it "
-              "is stable at every mass"},
+              "is stable at every mass, 0 where it is stable at none"},
+    {FG_NUMBER("stable_again_kg", fg_film_result, stable_again_kg), .csv = {.rank = 4},
+     .column = lists_no_draws,
+     .words = "mass from which on it does not whirl again; null: whirls at all above the critical "
+              "mass"},
     {RESULT("whirl_ratio", whirl_ratio, "whirl\nratio", 3),
      .words = "whirl over speed at the critical mass"},
     {FG_NUMBER_BY("whirl_hz", find_whirl_hz), .words = "that whirl", .csv = {.rank = 3}},

@@ -43,7 +43,12 @@ void fg_film_tolerance_words(const fg_film_report *report, char *text, size_t si
 void fg_film_orbit_words(const fg_film_orbit *orbit, char *text, size_t size);
 void fg_film_quantile_words(const fg_film_draws *draws, char *text, size_t size);
 
-/* "stable", "unstable", "stable at every mass" for the rotor of the report; NULL: not known. */
+/* Returns true where the threshold lies at a speed at which the rotor has not lifted off. */
+static inline bool fg_film_whirls_from_lift_off(const fg_film_report *report) {
+  return report->threshold_rpm <= report->lift_off_rpm; /* false for NaN */
+}
+
+/* "stable", "unstable", "stable at every mass" or "unstable at every mass" for the rotor of the report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
 
 enum { FG_FILM_NOTES = 7, FG_FILM_NOTE = 400 };

@@ -18,12 +18,14 @@ static void put_film_tiles(FILE *out, const fg_film_report *r) {
   const fg_tile tiles[] = {
       {"Rotor", .text = word ? word : "–", .small = "of the stated mass, at this speed",
        .look = !word                                             ? FG_TILE_OPEN
-               : at->critical_mass_kg > r->options.rotor_mass_kg ? FG_TILE_GOOD
+               : fg_film_is_stable(at, r->options.rotor_mass_kg) ? FG_TILE_GOOD
                                                                  : FG_TILE_BAD},
       {always ? NULL : "Critical mass", .value = at->critical_mass_kg, .digits = 4, .unit = "kg",
        .small = "on this bearing"},
       {"Threshold speed", .value = r->threshold_rpm, .unit = "rpm",
-       .small = "of this rotor under this load", .unknown = "none among the speeds"},
+       .small = fg_film_whirls_from_lift_off(r) ? "below lift-off: it whirls as soon as it flies"
+                                                : "of this rotor under this load",
+       .unknown = "none among the speeds"},
       {"Thinnest film", .value = at->min_film_um, .digits = 3, .unit = "µm", .small = "under load"},
       {"Eccentricity", .value = at->eccentricity, .digits = 3, .small = "over the clearance"},
       {"Load capacity", .value = r->load_capacity_n, .digits = 3, .unit = "N",

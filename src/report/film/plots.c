@@ -123,7 +123,7 @@ void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
   for (size_t i = 0; i < r->speeds; i++) {
     double critical = r->speed[i].critical_mass_kg;
     speed[i] = r->speed[i].speed_rpm / 1000;
-    mass[i] = isfinite(critical) ? log10(critical) : NAN;
+    mass[i] = isfinite(critical) && critical > 0 ? log10(critical) : NAN;
     fg_range_add(x, speed[i], 0);
     fg_range_add(y, mass[i], 0);
   }
@@ -138,10 +138,13 @@ void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
   fg_plot_line(&at, speed, mass, r->speeds, "s1");
   for (size_t i = 0; i < r->speeds; i++)
     if (isfinite(mass[i])) fg_plot_dot(&at, speed[i], mass[i], 4, "s1");
+  for (size_t i = 0; i < r->speeds; i++)
+    if (r->speed[i].critical_mass_kg <= 0) fg_plot_dot(&at, speed[i], y[0], 4, "s3");
   if (isfinite(r->threshold_rpm))
     fg_plot_dot(&at, r->threshold_rpm / 1000, log10(r->options.rotor_mass_kg), 6, "s2");
   fg_plot_key(&at, 80, "s1", "critical mass: heavier rotors whirl");
-  fg_plot_key(&at, 480, "s2", "threshold of this rotor");
+  fg_plot_key(&at, 380, "s2", "threshold of this rotor");
+  fg_plot_key(&at, 600, "s3", "every rotor whirls");
   fg_plot_end(&at);
 }
 

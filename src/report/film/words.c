@@ -12,7 +12,7 @@ static const char *find_verdict_of_map(const fg_film_report *r) {
   for (size_t i = 0; i < r->speeds; i++) {
     if (r->speed[i].outcome == FG_FILM_UNSOLVED) continue;
     known++;
-    unstable += r->options.rotor_mass_kg > r->speed[i].critical_mass_kg;
+    unstable += !fg_film_is_stable(&r->speed[i], r->options.rotor_mass_kg);
   }
   if (!known) return "has no film";
   if (unstable == known) return "is unstable at all speeds that have a film";
@@ -22,7 +22,12 @@ static const char *find_verdict_of_map(const fg_film_report *r) {
 
 static void note_threshold(const fg_film_report *r, char *note) {
   const fg_film_options *o = &r->options;
-  if (isfinite(r->threshold_rpm))
+  if (fg_film_whirls_from_lift_off(r))
+    snprintf(note, FG_FILM_NOTE,
+             "The rotor of %.4g kg on this bearing whirls as soon as it has lifted off (%.0f rpm), "
+             "under this load.",
+             o->rotor_mass_kg, r->lift_off_rpm);
+  else if (isfinite(r->threshold_rpm))
     snprintf(note, FG_FILM_NOTE,
              "The rotor of %.4g kg on this bearing whirls from %.0f rpm on, under this load.",
              o->rotor_mass_kg, r->threshold_rpm);
@@ -48,10 +53,10 @@ void fg_film_quantile_words(const fg_film_draws *d, char *text, size_t size) {
   if (!d->solved.count) snprintf(text, size, "none is solved");
   for (size_t k = 0; d->solved.count && k < FG_FILM_QUANTILES && used < size; k++) {
     const char *mark = k ? ", " : "";
-    int more =
-        isfinite(d->quantile[k])
-            ? snprintf(text + used, size - used, "%s%s %.3g", mark, where[k], d->quantile[k])
-            : snprintf(text + used, size - used, "%s%s stable at every mass", mark, where[k]);
+    int more = isfinite(d->quantile[k]) && d->quantile[k] > 0
+                   ? snprintf(text + used, size - used, "%s%s %.3g", mark, where[k], d->quantile[k])
+                   : snprintf(text + used, size - used, "%s%s %s at every mass", mark, where[k],
+                              d->quantile[k] > 0 ? "stable" : "unstable");
     used += more > 0 ? (size_t)more : 0;
   }
 }
