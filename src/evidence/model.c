@@ -15,6 +15,11 @@ static void list_columns(const fg_evidence_scatter *scatter, const fg_evidence_m
     f->column[f->count] = scatter->first + c;
     f->root[f->count++] = um;
   }
+  for (size_t c = scatter->count; c < fg_evidence_common_columns(scatter); c++) {
+    bool gauge = c < scatter->count + scatter->gauges;
+    f->column[f->count] = scatter->first + c;
+    f->root[f->count++] = gauge ? model->scatter_um[FG_EVIDENCE_GAUGE] : scatter->level_um;
+  }
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
     for (size_t c = 0; c < part->count && f->count < FG_EVIDENCE_MODEL_COLUMNS; c++) {

@@ -15,8 +15,16 @@
 enum { FG_EVIDENCE_PARTS = 6, FG_EVIDENCE_MODEL_COLUMNS = 700 };
 
 /* Numbers of a bump that scatter: its height above O at the crown, its radius at that height, its
- * place along the foil. */
-enum { FG_EVIDENCE_HEIGHT, FG_EVIDENCE_RADIUS, FG_EVIDENCE_PLACE, FG_EVIDENCE_SCATTERS };
+ * place along the foil; in the same places, on discs, the harmonics of their forms. The error of
+ * known radii comes after them. */
+enum {
+  FG_EVIDENCE_HEIGHT,
+  FG_EVIDENCE_RADIUS,
+  FG_EVIDENCE_PLACE,
+  FG_EVIDENCE_SCATTERS,
+  FG_EVIDENCE_GAUGE = FG_EVIDENCE_SCATTERS,
+  FG_EVIDENCE_SPREADS
+};
 
 /* A named effect (`effect`) or a rival; none of both: the scatter of the bumps. */
 typedef struct fg_evidence_part {
@@ -32,8 +40,8 @@ typedef struct fg_evidence_part {
 typedef struct fg_evidence_model {
   const fg_evidence_part *part[FG_EVIDENCE_PARTS]; /* of the search's store */
   size_t parts, named;
-  double scatter_um[FG_EVIDENCE_SCATTERS]; /* of the bumps */
-  double evidence, score;                  /* ln; score: with the priors, less that of no effect */
+  double scatter_um[FG_EVIDENCE_SPREADS]; /* of the bumps, or of the discs */
+  double evidence, score;                 /* ln; score: with the priors, less that of no effect */
 } fg_evidence_model;
 
 /* A model ready for candidates: Cholesky factor of I + A, A = q K q. */
@@ -45,10 +53,18 @@ typedef struct fg_evidence_factor {
   double evidence;
 } fg_evidence_factor;
 
-/* Columns of the bumps' own numbers: FG_EVIDENCE_SCATTERS of each. */
+/* Columns of the bumps' own numbers: FG_EVIDENCE_SCATTERS of each; then those of known radii, and
+ * of the level of all edges, which moves light and dark discs in opposite directions. */
 typedef struct fg_evidence_scatter {
   size_t first, count; /* columns; count 0: no bumps */
+  size_t gauges;       /* known radii; 0: none, and no level */
+  double level_um;     /* standard deviation of the level */
 } fg_evidence_scatter;
+
+/* Returns the number of columns that every model holds. */
+static inline size_t fg_evidence_common_columns(const fg_evidence_scatter *scatter) {
+  return scatter->count + scatter->gauges + (scatter->gauges > 0);
+}
 
 /* Factors on the expectations before the rows are seen: on the sizes of amplitudes, and on the
  * probability of each cause. 1 but where a study asks how much hangs on them. */

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "effect/columns.h"
+#include "evidence/gauges.h"
 #include "evidence/unnamed.h"
 
 static bool is_power(const fg_effect *effect) {
@@ -328,6 +329,7 @@ static fg_status add_unnamed(fg_context *ctx, fg_evidence_search *s) {
 fg_status fg_evidence_list_options(fg_context *ctx, const double *jacobian, fg_evidence_search *s) {
   FG_TRY(fg_memory_allocate(ctx, FG_EVIDENCE_OPTIONS, sizeof *s->options, (void **)&s->options));
   FG_TRY(s->problem.edge_fit->discs ? add_form_errors(ctx, s) : add_scatter(ctx, jacobian, s));
+  FG_TRY(fg_evidence_add_gauges(ctx, s));
   FG_TRY(add_rivals(ctx, s));
   FG_TRY(add_effects(ctx, s));
   FG_TRY(add_unnamed(ctx, s));

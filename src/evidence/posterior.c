@@ -73,7 +73,7 @@ void fg_evidence_posterior_close(fg_evidence_posterior *p) {
 }
 
 size_t fg_evidence_first_of(const fg_evidence_search *s, const fg_evidence_model *model, size_t k) {
-  size_t at = s->scatter.count;
+  size_t at = fg_evidence_common_columns(&s->scatter);
   for (size_t i = 0; i < k; i++)
     at += model->part[i]->count;
   return at;

@@ -29,9 +29,8 @@ bool fg_evidence_fits(const fg_edge_fit *edge_fit) {
   for (size_t p = 0; p < edge_fit->part_count; p++)
     bumps += edge_fit->parts[p].bump_count;
   if (edge_fit->row_count > ROWS_MAX) return false;
-  if (edge_fit->discs) /* of known size, the level of all edges is one more unknown */
-    return !edge_fit->known_count && edge_fit->part_count >= DISCS_MIN &&
-           edge_fit->part_count <= DISCS_MAX;
+  if (edge_fit->discs)
+    return edge_fit->part_count >= DISCS_MIN && edge_fit->part_count <= DISCS_MAX;
   return bumps && bumps <= BUMPS_MAX;
 }
 
@@ -146,7 +145,7 @@ static fg_status find_flat_directions(fg_context *ctx, fg_evidence_problem *p,
     size_t bumps = edge_fit->parts[part].bump_count;
     int middle = bumps ? edge_fit->parts[part].bumps[bumps / 2].number : 0;
     direction[at] = 1;
-    if (!edge_fit->parts[part].radius_known) add_direction(p, direction, jacobian, column);
+    if (!(edge_fit->parts[part].known_radius_mm > 0)) add_direction(p, direction, jacobian, column);
     direction[at] = 0;
     for (size_t k = 0; bumps && k < 3; k++)
       for (int trend = 0; trend < 2; trend++) {

@@ -40,7 +40,7 @@ typedef struct fg_evidence_problem {
   double *white; /* all rows */
 } fg_evidence_problem;
 
-/* Returns true for rows of some foils, or of some discs of unknown size, not of many: a problem's
+/* Returns true for rows of some foils, or of some discs, not of many: a problem's
  * time grows with the cube of the number of bumps, its memory with the number of rows. */
 bool fg_evidence_fits(const fg_edge_fit *edge_fit);
 

@@ -49,10 +49,12 @@ static double mean_radius_um(const fg_edge_fit *edge_fit) {
   return edge_fit->part_count ? 1000 * sum / (double)edge_fit->part_count : 0;
 }
 
-/* Of the harmonics of discs' forms, um. */
+/* Of the harmonics of discs' forms, um; of known radii: what a gauge and its edge are off. */
 static const double form_error_um[SCATTERS_TRIED] = {0.01, 0.05, 0.25, 1, 4};
+static const double gauge_error_um[SCATTERS_TRIED] = {0.1, 0.25, 0.6, 1.5, 4};
 
 static double scatter_um(const fg_evidence_search *s, int which, int i) {
+  if (which == FG_EVIDENCE_GAUGE) return gauge_error_um[i];
   if (s->problem.edge_fit->discs) return form_error_um[i];
   double unit = which == FG_EVIDENCE_RADIUS ? 1e-3 * mean_radius_um(s->problem.edge_fit) : 1;
   return unit * scatters[which][i];
@@ -87,7 +89,8 @@ static fg_status find_scatter(fg_context *ctx, fg_evidence_search *s, fg_evidenc
   unsigned threads = s->scatter.count < MANY ? 1 : s->request.threads;
   fg_evidence_model best = *model;
   FG_TRY(evaluate(ctx, s, &best));
-  for (int which = 0; s->scatter.count && which < FG_EVIDENCE_SCATTERS; which++) {
+  int spreads = s->scatter.gauges ? FG_EVIDENCE_SPREADS : FG_EVIDENCE_SCATTERS;
+  for (int which = 0; s->scatter.count && which < spreads; which++) {
     scatter_trials trials = {.search = s};
     for (int i = 0; i < SCATTERS_TRIED; i++) {
       trials.model[i] = best;
@@ -434,7 +437,7 @@ exit:
 fg_status fg_evidence_search_run(fg_context *ctx, fg_evidence_search *s) {
   fg_evidence_model none = {.parts = 0};
   s->count = s->stored = 0;
-  for (int which = 0; which < FG_EVIDENCE_SCATTERS; which++)
+  for (int which = 0; which < FG_EVIDENCE_SPREADS; which++)
     none.scatter_um[which] = scatter_um(s, which, SCATTERS_TRIED / 2);
   FG_TRY(find_scatter(ctx, s, &none));
   s->models[s->count++] = none;

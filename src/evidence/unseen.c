@@ -43,7 +43,8 @@ static void list_sizes(const fg_evidence_search *s, const fg_evidence_option *ma
        l++)
     for (int a = 0; a < FG_EVIDENCE_AMPLITUDES; a++, to->count++)
       for (size_t c = 0; c < map->each; c++)
-        to->variance[to->count][c] = pow(fg_evidence_amplitude_um(&s->request.prior, a), 2) * variance[c];
+        to->variance[to->count][c] =
+            pow(fg_evidence_amplitude_um(&s->request.prior, a), 2) * variance[c];
 }
 
 static fg_status weigh_sizes(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model *model,

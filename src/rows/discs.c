@@ -39,9 +39,17 @@ static int compare_sized(const void *a, const void *b) {
 static void know_radius(fg_edge_fit *edge_fit, size_t view, double diameter_mm) {
   fg_edge_fit_part *part = &edge_fit->parts[edge_fit->views[view].part];
   if (fabs(diameter_mm / (2 * part->overall_radius_mm) - 1) > DIAMETER_SHARE) return;
-  part->overall_radius_mm = 0.5 * diameter_mm;
+  part->overall_radius_mm = part->known_radius_mm = 0.5 * diameter_mm;
   part->radius_known = true;
   edge_fit->known_count++;
+}
+
+void fg_edge_fit_hold_radii(fg_edge_fit *edge_fit, bool hold) {
+  for (size_t p = 0; p < edge_fit->part_count; p++) {
+    fg_edge_fit_part *part = &edge_fit->parts[p];
+    part->radius_known = hold && part->known_radius_mm > 0;
+    if (part->radius_known) part->overall_radius_mm = part->known_radius_mm;
+  }
 }
 
 /* Assigns known diameters to discs, each used once. Equal numbers are assigned by rank, which is

@@ -68,8 +68,9 @@ typedef struct fg_edge_fit_part {
   double mean_radius_mm; /* of the bumps, as measured */
   size_t arcs;
   double half_span_rad;
-  double end_to_end_rad; /* end-to-end angle of the strip about O; 0: unknown */
-  bool radius_known;     /* the overall radius is a gauge's and is not fitted */
+  double end_to_end_rad;  /* end-to-end angle of the strip about O; 0: unknown */
+  double known_radius_mm; /* a gauge's; 0: not known */
+  bool radius_known;      /* the overall radius is held at the gauge's and is not fitted */
 } fg_edge_fit_part;
 
 typedef struct fg_edge_fit_pose {
@@ -185,6 +186,9 @@ double fg_edge_fit_weighted_square(const fg_edge_fit *edge_fit, const double *re
 /* Fits the geometry under a correction by least squares, Gauss-Newton to convergence. */
 fg_status fg_edge_fit_fit(fg_context *ctx, fg_edge_fit *edge_fit,
                           const fg_edge_fit_correction *correction);
+
+/* Holds known radii at those of the gauges, or lets the fit find them. */
+void fg_edge_fit_hold_radii(fg_edge_fit *edge_fit, bool hold);
 
 /* Saves and restores the geometry's numbers: fg_edge_fit_geometry_size doubles. */
 size_t fg_edge_fit_geometry_size(const fg_edge_fit *edge_fit);

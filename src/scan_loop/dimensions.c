@@ -79,7 +79,7 @@ static void add_foil_noise(const fg_edge_fit_part *part, const fg_joint_fit_part
 static void add_disc_noise(const fg_edge_fit_part *part, const fg_joint_fit_part *adds, size_t disc,
                            double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
-  if (!part->radius_known) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
+  if (!(part->known_radius_mm > 0)) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
   add_scaled(benefit, disc, noise, scale);
 }
 

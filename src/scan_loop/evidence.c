@@ -110,7 +110,9 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
   if (v->outcome == FG_EVIDENCE_CLEAN) {
     to->each[0] = (fg_explanation){.mask = 0};
     to->count = to->total = 1;
-    if (!edge_fit->discs) to->p_value = fmax(to->p_value, v->p_null); /* a disc's form is noise */
+    if (!edge_fit->discs ||
+        edge_fit->known_count) /* a disc's form is noise, what a gauge is off not */
+      to->p_value = fmax(to->p_value, v->p_null);
     return;
   }
   for (size_t k = 0; k < v->ties; k++)
@@ -156,6 +158,18 @@ static void leave_out_nothings(const fg_effect_set *set, fg_explanations *explan
         explanations->each[0].mask &= ~(1u << c);
 }
 
+static bool holds_scale(const fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    if (set->effects[e].kind->scales) return true;
+  return false;
+}
+
+/* Gauges, and the level of the edges, err: known radii decide on a scale alone. */
+static fg_status fit_set(fg_context *ctx, fg_scan_loop *loop, fg_effect_set *set) {
+  fg_edge_fit_hold_radii(&loop->edge_fit, holds_scale(set));
+  return fg_joint_fit(ctx, &loop->edge_fit, set, loop->residual_after);
+}
+
 /* Leaves such effects out of the only explanation, unless nothing else is in it. */
 static fg_status drop_nothings(fg_context *ctx, fg_scan_loop *loop) {
   const fg_effect_set all = loop->set;
@@ -163,9 +177,8 @@ static fg_status drop_nothings(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t e = 0; e < all.count; e++)
     if (!is_nothing(&all.effects[e])) some.effects[some.count++] = all.effects[e];
   if (loop->explanations.count > 1 || !some.count || some.count == all.count) return FG_OK;
-  fg_status status = fg_joint_fit(ctx, &loop->edge_fit, &some, loop->residual_after);
-  if (status == FG_ERR_NUMERIC)
-    return fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
+  fg_status status = fit_set(ctx, loop, &some);
+  if (status == FG_ERR_NUMERIC) return fit_set(ctx, loop, &loop->set);
   loop->set = some;
   leave_out_nothings(&all, &loop->explanations);
   return status;
@@ -178,11 +191,11 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   double *geometry = NULL;
   FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
   fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
-  fg_status status = fg_joint_fit(ctx, &loop->edge_fit, set, loop->residual_after);
+  fg_status status = fit_set(ctx, loop, set);
   if (status == FG_OK && !has_converged(loop)) status = FG_ERR_NUMERIC;
   if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
-    fg_status before = fg_joint_fit(ctx, &loop->edge_fit, &loop->set, loop->residual_after);
+    fg_status before = fit_set(ctx, loop, &loop->set);
     if (before != FG_OK) status = before;
   }
   free(geometry);
@@ -394,6 +407,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   fg_evidence_verdict verdict;
   fg_status status = FG_OK;
   seeds->set[0] = loop->set;
+  fg_edge_fit_hold_radii(&loop->edge_fit, true);
   FG_TRY(fg_search_put_back(ctx, &loop->edge_fit, &loop->set, residual, jacobian));
   FG_TRY_EXIT(search_models(ctx, loop, residual, jacobian, seeds, &search));
   seed_by_evidence(&search, seeds);
@@ -415,6 +429,14 @@ exit:
   return status;
 }
 
+/* Residuals before and after beside the same radii. */
+static fg_status fit_beside_radii(fg_context *ctx, fg_scan_loop *loop) {
+  fg_effect_set none = {.count = 0};
+  fg_edge_fit_hold_radii(&loop->edge_fit, holds_scale(&loop->set));
+  FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &none, loop->residual_before));
+  return fit_set(ctx, loop, &loop->set);
+}
+
 fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   fg_edge_fit *edge_fit = &loop->edge_fit;
   double *residual = NULL, *jacobian = NULL;
@@ -429,6 +451,7 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   seed_by_search(loop, &seeds);
   for (int round = 0; moved && round < LINEARISATIONS; round++)
     FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &seeds, round == 0, &moved));
+  if (edge_fit->known_count) FG_TRY_EXIT(fit_beside_radii(ctx, loop));
   loop->by_evidence = true;
   loop->scanner_is_suspect = holds_scanner(&loop->explanations);
 exit:

@@ -42,11 +42,10 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
     const fg_edge_fit_view *view = &edge_fit->views[v];
     const fg_edge_fit_part *part = &edge_fit->parts[view->part];
     const fg_disc *disc = view->disc;
-    if (view->held_out || !part->radius_known || disc->flags & FG_BUMP_POOR_FIT) continue;
+    if (view->held_out || !(part->known_radius_mm > 0) || disc->flags & FG_BUMP_POOR_FIT) continue;
     const fg_disc *corrected = &scans[view->scan].discs[disc - view->measurement->discs];
     double stated = view->measurement->design.discs.u_diameters_mm;
-    add_disc(disc, corrected, 2 * part->overall_radius_mm, stated > 0 ? stated : U_DIAMETER_MM,
-             &sum);
+    add_disc(disc, corrected, 2 * part->known_radius_mm, stated > 0 ? stated : U_DIAMETER_MM, &sum);
     blur += disc->spread_px;
     asymmetry += disc->asymmetry;
     shown += fg_model_tone_shown_by(disc);

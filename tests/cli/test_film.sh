@@ -70,7 +70,7 @@ assert {"stable at every mass", "unstable at every mass", "unstable"} <= words, 
 assert all((s["critical_mass_kg"] == 0) == (s["stability"] == "unstable at every mass") for s in known)
 assert r["threshold_rpm"] <= r["lift_off_rpm"] < 19500, r
 END
-# What is asked in between moves no limit of the bearing: the search for it begins at its own film.
+# The map of speeds moves no limit of the bearing: the search for limits begins at its own film.
 expect 0 "" "$program" film design.json --load 40 --speed 60000 --mesh 2,4 --speeds 50000:70000:2 -o few.json
 expect 0 "" "$program" film design.json --load 40 --speed 60000 --mesh 2,4 --speeds 30000:240000:9 -o many.json
 checks - <<'END' || fail "limits hang on the map of speeds"
