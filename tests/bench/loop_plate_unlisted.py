@@ -3,8 +3,8 @@
 """The loop on plates of pins whose cause no row of its table names: renders without an effect, warped by the fields of
 loop_unlisted.py, or by forms of the pins; a row that is a kind itself is left out of that kind's inputs.
 
-/usr/bin/python3 tests/bench/loop_plate_unlisted.py build/foilgauge [--cases 110] [--seed 1] [--fresh]
-    [--csv reports/loop_plate_unlisted.csv] [--out reports/loop_plate_unlisted.md]"""
+/usr/bin/python3 tests/bench/loop_plate_unlisted.py build/foilgauge [--cases 110] [--seed 1] [--known] [--fresh]
+    [--csv reports/loop_plate_unlisted.csv] [--out reports/loop_plate_unlisted.md]; --known: reports/loop_plate_known.csv and .md"""
 
 import argparse
 import json
@@ -116,11 +116,20 @@ def judge(row, report):
     row["inside"], row["values"] = int(np.sum(np.abs(after) <= 2 * u_after)), len(after)
 
 
+def write_known(folder):
+    """Path of a design that tells the diameters."""
+    path = os.path.join(folder, "known.json")
+    with open(path, "w", encoding="utf-8") as out:
+        json.dump({"schema": "foilgauge/design/1", "name": "gauges", "form": "discs", "diameters_mm": list(2 * RADII)}, out)
+    return path
+
+
 def run_case(options, index):
     with tempfile.TemporaryDirectory() as folder:
         row, path = draw_input(options.program, options.seed, index, folder)
         own = ["--without", unlisted.OWN_ROW[row["cause"]]] if row["cause"] in unlisted.OWN_ROW else []
-        report, error, seconds = foreign.run_loop(options.program, [path], 1, DPI, ["--form", "discs", *own])
+        form = ["--design", write_known(folder)] if options.known else ["--form", "discs"]
+        report, error, seconds = foreign.run_loop(options.program, [path], 1, DPI, [*form, *own])
     row["seconds"] = f"{seconds:.2f}"
     if report:
         judge(row, report)
@@ -162,13 +171,15 @@ def write_page(options, rows):
     groups += [(f"{um} um", [r for r in causes if r["size_um"] == str(um)]) for um in unlisted.SIZES_UM]
     groups += [(f"{e} edges", [r for r in causes if r["edge"] == e]) for e in ("ideal", "rough")]
     lines = [
-        "# The loop on plates whose cause no row names\n",
+        f"# The loop on plates {'of known diameters ' if options.known else ''}whose cause no row names\n",
         f"Renders of twelve pins of 1 to 7 mm without an effect, {DPI} dpi, that are warped by a field of the scanner (those of"
         " loop_unlisted.md) or by\nforms of the pins: each its own lobes, a flat on each, lobes that are alike on all, a burr on"
         " one. Sizes are 3, 8, 20 um. Every eighth input is clean.\nA kind that has a row in the list is measured without it"
         " (`--without`). Errors of the radius are medians of the inputs' rms. Worse: beyond the\nerror before by more than twice that of"
         " clean plates. s: seconds of the processor, while other work ran beside.\n",
-        f"    /usr/bin/python3 tests/bench/loop_plate_unlisted.py build/foilgauge --cases {len(rows)} --seed {options.seed}\n",
+        *(["The design tells the pins' diameters, which are exact.\n"] if options.known else []),
+        f"    /usr/bin/python3 tests/bench/loop_plate_unlisted.py build/foilgauge --cases {len(rows)} --seed {options.seed}"
+        f"{' --known' if options.known else ''}\n",
         HEAD, *[group_row(name, own, noise) for name, own in groups],
         "\n## Wrong `found`\n", "| case | truth | size, um | edges | found | radius, um |\n|" + "---|" * 6,
     ]  # fmt: skip
@@ -184,11 +195,14 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--cases", type=int, default=110)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--csv", default="reports/loop_plate_unlisted.csv")
-    parser.add_argument("--out", default="reports/loop_plate_unlisted.md")
+    parser.add_argument("--csv")
+    parser.add_argument("--out")
+    parser.add_argument("--known", action="store_true", help="the design tells the pins' diameters")
     parser.add_argument("--fresh", action="store_true", help="forget the inputs that the CSV has")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
+    page = "reports/loop_plate_known" if options.known else "reports/loop_plate_unlisted"
+    options.csv, options.out = options.csv or page + ".csv", options.out or page + ".md"
     foreign.work_on_all(options, lambda index: run_case(options, index), FIELDS)
     write_page(options, foreign.rows_of(options))
 
