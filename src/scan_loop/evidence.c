@@ -110,9 +110,7 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
   if (v->outcome == FG_EVIDENCE_CLEAN) {
     to->each[0] = (fg_explanation){.mask = 0};
     to->count = to->total = 1;
-    if (!edge_fit->discs ||
-        edge_fit->known_count) /* a disc's form is noise, what a gauge is off not */
-      to->p_value = fmax(to->p_value, v->p_null);
+    if (!edge_fit->discs) to->p_value = fmax(to->p_value, v->p_null); /* a disc's form is noise */
     return;
   }
   for (size_t k = 0; k < v->ties; k++)
@@ -429,10 +427,10 @@ exit:
   return status;
 }
 
-/* Residuals before and after beside the same radii. */
-static fg_status fit_beside_radii(fg_context *ctx, fg_scan_loop *loop) {
+/* A scale is what known radii leave: residuals before and after are from these. */
+static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
   fg_effect_set none = {.count = 0};
-  fg_edge_fit_hold_radii(&loop->edge_fit, holds_scale(&loop->set));
+  fg_edge_fit_hold_radii(&loop->edge_fit, true);
   FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &none, loop->residual_before));
   return fit_set(ctx, loop, &loop->set);
 }
@@ -451,7 +449,7 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   seed_by_search(loop, &seeds);
   for (int round = 0; moved && round < LINEARISATIONS; round++)
     FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &seeds, round == 0, &moved));
-  if (edge_fit->known_count) FG_TRY_EXIT(fit_beside_radii(ctx, loop));
+  if (holds_scale(&loop->set)) FG_TRY_EXIT(fit_beside_known_radii(ctx, loop));
   loop->by_evidence = true;
   loop->scanner_is_suspect = holds_scanner(&loop->explanations);
 exit:

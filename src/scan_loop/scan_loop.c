@@ -75,6 +75,7 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   loop->edge_fit.coarse = loop->options.coarse;
   loop->edge_fit.threads = loop->options.threads;
   loop->edge_fit.proposes = !loop->options.coarse && fg_evidence_fits(&loop->edge_fit);
+  if (loop->edge_fit.proposes) fg_edge_fit_hold_radii(&loop->edge_fit, false);
   loop->edge_fit.left_out = loop->options.without;
   if (loop->options.coarse) fg_edge_fit_find_frame(&loop->edge_fit);
   size_t rows = 0;
@@ -253,6 +254,7 @@ static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_put_form_errors(ctx, loop));
   FG_TRY(fg_scan_loop_find_width(ctx, loop));
   loop->tone = fg_scan_loop_find_tone(loop, true);
+  FG_TRY(fg_scan_loop_say_known_sizes(ctx, loop));
   widen_scales(loop);
   loop->verdict = fg_scan_loop_outcome(loop);
   return fg_scan_loop_decide(ctx, loop);

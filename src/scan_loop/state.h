@@ -107,6 +107,14 @@ fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
 fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
                                    const fg_joint_fit_result *fit, fg_measurement *after);
 
+/* Standard uncertainty of a known diameter if the design does not state it: a pin gauge within 1
+ * um. */
+#define FG_U_DIAMETER_MM 0.0005
+
+/* Tells what known diameters leave open where no scale was found, and from which size on one would
+ * have shown. Needs the tone. */
+fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop);
+
 /* Finds the edge level from the scans' discs of known diameter, together with a scale. After a
  * search it uses the discs as scanned or as corrected, whichever agree better. gauges is 0 where
  * the discs do not determine the level. */

@@ -4,9 +4,6 @@
 
 #include "scan_loop/state.h"
 
-/* Standard uncertainty of a known diameter if the design does not state it: a pin gauge within 1
- * um. */
-#define U_DIAMETER_MM 0.0005
 /* Limits of u. Discs of several sizes separate the level from any scale of the scanner: the level
  * counts as known when its u is at most half of the uncertainty by an unknown tone curve. */
 #define SCALE_FREE  0.05
@@ -45,7 +42,8 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
     if (view->held_out || !(part->known_radius_mm > 0) || disc->flags & FG_BUMP_POOR_FIT) continue;
     const fg_disc *corrected = &scans[view->scan].discs[disc - view->measurement->discs];
     double stated = view->measurement->design.discs.u_diameters_mm;
-    add_disc(disc, corrected, 2 * part->known_radius_mm, stated > 0 ? stated : U_DIAMETER_MM, &sum);
+    add_disc(disc, corrected, 2 * part->known_radius_mm, stated > 0 ? stated : FG_U_DIAMETER_MM,
+             &sum);
     blur += disc->spread_px;
     asymmetry += disc->asymmetry;
     shown += fg_model_tone_shown_by(disc);

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Known diameters that no effect explains: what they leave open of the scanner's scale. */
+#include <math.h>
+
+#include "core/small_solve.h"
+#include "scan_loop/state.h"
+
+/* Standard uncertainties from which evidence finds a scale, and from which a mean deviation is
+ * worth a note. */
+#define FOUND_ERRORS 5.0
+#define NOTED_ERRORS 3.0
+
+/* Deviations of the corrected radii from the known ones, um. */
+typedef struct deviations {
+  size_t count;
+  double mean_um, u_um; /* u: as stated, of one radius */
+  double scatter;       /* beside a level and a scale, over u; at least 1 */
+} deviations;
+
+static bool holds_scale(const fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    if (set->effects[e].kind->scales) return true;
+  return false;
+}
+
+static double radius_of(const fg_scan_loop *loop, const fg_edge_fit_view *view) {
+  return loop->after[view->scan].discs[view->disc - view->measurement->discs].radius_mm;
+}
+
+static deviations find_deviations(const fg_scan_loop *loop) {
+  const fg_edge_fit *edge_fit = &loop->edge_fit;
+  double stated_mm = loop->before[0].design.discs.u_diameters_mm, sum = 0, x[2] = {0, 0};
+  deviations found = {.u_um = 500 * (stated_mm > 0 ? stated_mm : FG_U_DIAMETER_MM), .scatter = 1};
+  fg_normal_equations system;
+  fg_normal_clear(&system, 2);
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_edge_fit_view *view = &edge_fit->views[v];
+    double known_mm = edge_fit->parts[view->part].known_radius_mm;
+    if (view->held_out || !(known_mm > 0) || view->disc->flags & FG_BUMP_POOR_FIT) continue;
+    double by[2] = {view->disc->bright ? 1 : -1, known_mm};
+    double um = 1000 * (radius_of(loop, view) - known_mm);
+    fg_normal_add(&system, by, um, 1);
+    sum += um;
+    found.count++;
+  }
+  if (found.count) found.mean_um = sum / (double)found.count;
+  if (found.count < 4 || !fg_normal_solve(&system, 1e-9, x, NULL)) return found;
+  double left = system.sum_squares - x[0] * system.right[0] - x[1] * system.right[1];
+  found.scatter = fmax(1, sqrt(fmax(0, left) / ((double)found.count - 2)) / found.u_um);
+  return found;
+}
+
+/* The joint fit lets radii follow the scan, so a scale is told by the gauges alone. */
+static void put_smallest(double scale, fg_explanations *explanations) {
+  for (size_t e = 0; e < explanations->candidate_count; e++)
+    if (explanations->candidates[e].kind->scales) {
+      explanations->smallest_um[e] = scale * 1000 * FG_FIELD_HALF_MM;
+      explanations->share[e] = 1;
+    }
+}
+
+fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
+  if (!loop->by_evidence || !loop->edge_fit.known_count || holds_scale(&loop->set)) return FG_OK;
+  const deviations of = find_deviations(loop);
+  double smallest = FOUND_ERRORS * of.scatter * loop->tone.u_scale;
+  put_smallest(smallest, &loop->explanations);
+  if (fabs(of.mean_um) * sqrt((double)of.count) < NOTED_ERRORS * of.scatter * of.u_um) return FG_OK;
+  return fg_scan_loop_bumps_note(
+      ctx, &loop->bumps,
+      "points: the radii of the %zu known discs come %.2g um too %s in the mean, within what the "
+      "level of the edges leaves open; a scale below %.0f ppm would not have shown beside it: "
+      "gauges of more different sizes tell level and scale apart",
+      of.count, fabs(of.mean_um), of.mean_um > 0 ? "large" : "small", 1e6 * smallest);
+}
