@@ -190,7 +190,8 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
   fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
   fg_status status = fit_set(ctx, loop, set);
-  if (status == FG_OK && !has_converged(loop)) status = FG_ERR_NUMERIC;
+  bool comparable = !holds_scale(set); /* beside known radii more is left */
+  if (status == FG_OK && comparable && !has_converged(loop)) status = FG_ERR_NUMERIC;
   if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
     fg_status before = fit_set(ctx, loop, &loop->set);
@@ -427,11 +428,14 @@ exit:
   return status;
 }
 
-/* A scale is what known radii leave: residuals before and after are from these. */
+/* Fits the explanation in force to its radii. Residuals before and after a scale are from known
+ * ones, which alone show it. */
 static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
   fg_effect_set none = {.count = 0};
-  fg_edge_fit_hold_radii(&loop->edge_fit, true);
-  FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &none, loop->residual_before));
+  if (holds_scale(&loop->set)) {
+    fg_edge_fit_hold_radii(&loop->edge_fit, true);
+    FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &none, loop->residual_before));
+  }
   return fit_set(ctx, loop, &loop->set);
 }
 
@@ -449,7 +453,7 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   seed_by_search(loop, &seeds);
   for (int round = 0; moved && round < LINEARISATIONS; round++)
     FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &seeds, round == 0, &moved));
-  if (holds_scale(&loop->set)) FG_TRY_EXIT(fit_beside_known_radii(ctx, loop));
+  if (edge_fit->known_count) FG_TRY_EXIT(fit_beside_known_radii(ctx, loop));
   loop->by_evidence = true;
   loop->scanner_is_suspect = holds_scanner(&loop->explanations);
 exit:

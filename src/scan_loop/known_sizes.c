@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Known diameters that no effect explains: what they leave open of the scanner's scale. */
+/* Known diameters beside which no scale was found: their deviations, and the scale that would have
+ * shown. */
 #include <math.h>
 
 #include "core/small_solve.h"
@@ -27,7 +28,7 @@ static double radius_of(const fg_scan_loop *loop, const fg_edge_fit_view *view) 
   return loop->after[view->scan].discs[view->disc - view->measurement->discs].radius_mm;
 }
 
-static deviations find_deviations(const fg_scan_loop *loop) {
+static deviations compare_with_known(const fg_scan_loop *loop) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   double stated_mm = loop->before[0].design.discs.u_diameters_mm, sum = 0, x[2] = {0, 0};
   deviations found = {.u_um = 500 * (stated_mm > 0 ? stated_mm : FG_U_DIAMETER_MM), .scatter = 1};
@@ -61,7 +62,7 @@ static void put_smallest(double scale, fg_explanations *explanations) {
 
 fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
   if (!loop->by_evidence || !loop->edge_fit.known_count || holds_scale(&loop->set)) return FG_OK;
-  const deviations of = find_deviations(loop);
+  const deviations of = compare_with_known(loop);
   double smallest = FOUND_ERRORS * of.scatter * loop->tone.u_scale;
   put_smallest(smallest, &loop->explanations);
   if (fabs(of.mean_um) * sqrt((double)of.count) < NOTED_ERRORS * of.scatter * of.u_um) return FG_OK;

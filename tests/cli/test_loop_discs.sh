@@ -113,6 +113,21 @@ grep -q 'scale is that of 12 gauges of known diameter' absolute.html || fail "th
 grep -q 'error of scale is not in it\|without a known diameter' absolute.html && fail "the page says that the scale is not known"
 grep -q 'without a known diameter' relative.html || fail "the page does not say that the scale is not known"
 
+# Gauges that are not as known, by up to 2 um: the effects are found as without them, and bent by nothing.
+python3 -c "
+import json
+pins = json.loads('[' + '''$pins''' + ']')
+off = [0.5, -0.3, 2.0, 0.1, -0.6, 0.4, -0.2, 0.7, -0.5, 0.2, -0.1, 0.3]
+json.dump({'schema': 'foilgauge/design/1', 'name': 'plate', 'form': 'discs',
+           'diameters_mm': [2 * p[2] - 0.001 * o for p, o in zip(pins, off)]}, open('off.json', 'w'))"
+"$program" loop all.png --design off.json -o off.out || fail "loop with gauges that are off"
+[ "$(value off.out "sorted(c['id'] for c in r['claims'])")" = "['scan.carriage_ripple', 'scan.row_step', 'scan.scale_y', 'scan.shear']" ] ||
+  fail "gauges that are off give $(value off.out "r['verdict'], [c['id'] for c in r['claims']]")"
+near "scale beside gauges that are off" "$(value off.out "next(c for c in r['claims'] if c['id'] == 'scan.scale_y')['parameters']['value']")" 0.001 0.00001
+python3 -c "import sys; sys.exit(not float(sys.argv[1]) < 2e-6)" \
+  "$(value off.out "next(c for c in r['claims'] if c['id'] == 'scan.shear')['uncertainty']['value']")" || fail "gauges that are off make a shear uncertain"
+near "radius beside gauges that are off" "$(error_of off.out after)" 0 0.15
+
 # A keystone, which is no effect of plates by name: a map of the picture, and no quadratic of the carriage.
 plate keystone 8 '{"id":"scan.keystone","amplitude_um":12}'
 "$program" loop keystone.png --form discs -o keystone.out || fail "loop on a plate with a keystone"
