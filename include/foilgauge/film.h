@@ -132,7 +132,8 @@ typedef struct fg_film_result {
   double stable_again_kg;   /* heavier rotors do not whirl; infinite: all above the critical mass do
                              */
   double whirl_ratio;       /* of the whirl at the critical mass, over the speed */
-  double log_decrement;     /* of the rotor's least stable whirl; NaN: not asked, or none */
+  double log_decrement;     /* of the rotor's least stable whirl; NaN: not asked, or none; minus
+                               infinite where it falls off its place */
   double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
   fg_film_side side;
   size_t draw; /* its number, from 1; 0: no drawn bearing */
@@ -141,6 +142,12 @@ typedef struct fg_film_result {
 /* Returns true for a rotor that does not whirl on a bearing at its speed; false where unsolved. */
 static inline bool fg_film_is_stable(const fg_film_result *result, double mass_kg) {
   return mass_kg < result->critical_mass_kg || mass_kg > result->stable_again_kg;
+}
+
+/* Returns true for a film between two others that no rotor rests on: it falls off without a whirl.
+ */
+static inline bool fg_film_falls_off(const fg_film_result *result) {
+  return result->critical_mass_kg == 0 && result->whirl_ratio == 0;
 }
 
 /* Stiffness and damping at one frequency of whirl; xx, xy, yx, yy. */
@@ -285,9 +292,14 @@ typedef struct fg_film_report {
   double threshold_eigen_rpm;       /* by the least stable eigenvalue; NaN likewise */
   fg_film_mode mode[FG_FILM_MODES]; /* at this speed, the least stable one first */
   size_t modes;
-  /* Largest load at this speed, and lowest speed under this load, with a film of touching_um at
+  /* Largest load at this speed, and lowest speed under this load, with any film of touching_um at
    * least; NaN: not found, or it touches already. */
   double load_capacity_n, lift_off_rpm;
+  /* Ends of the bearing's own film on the way there, where the rotor passes to another one; NaN:
+   * it does not. */
+  double film_ends_n, film_ends_rpm;
+  bool has_other_film;       /* at this load and speed, with the rotor at another place: */
+  fg_film_result other_film; /* that one */
   fg_film_lift_off lift_off;
   char bore_path[512], bore_sha256[65];
   double bore_shift_mm[FG_BEARING_BUMPS_MAX]; /* at the bearing's places */

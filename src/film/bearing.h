@@ -38,6 +38,7 @@ typedef struct fg_film_workspace {
   fg_film_state state;
   fg_film_case spare_before; /* of fg_film_keep_film */
   fg_film_state spare;
+  bool steady_only; /* no critical masses, which take most of the time, are asked for */
 } fg_film_workspace;
 fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
                                  fg_film_workspace *workspace);
@@ -50,12 +51,22 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report,
                                 fg_film_workspace *workspace, const fg_film_bearing *bearing,
                                 double speed_rpm, fg_film_start start, fg_film_result *result);
 
-/* The same from nothing, and where no whole film is found so, on from a faster rotor: near lift-off
- * a bearing of pads may have a film before and behind a gap between them, and one path finds one of
- * both. */
+/* The same from nothing, and where no whole film is found so, on from a faster rotor, and from
+ * places towards the load: a bearing of pads may have a film before and behind a gap between them,
+ * and one path finds one of both. */
 fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *report,
                             fg_film_workspace *workspace, const fg_film_bearing *bearing,
                             double speed_rpm, fg_film_result *result);
+
+/* The last of these ways alone, which finds films under heavy loads. */
+fg_status fg_film_solve_from_places(fg_context *ctx, const fg_film_report *report,
+                                    fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                                    double speed_rpm, fg_film_result *result);
+
+/* Another film on which the rotor rests at the options' speed than that at a place. */
+fg_status fg_film_seek_beside(fg_context *ctx, const fg_film_report *report,
+                              fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                              const double place[2], fg_film_result *result, bool *found);
 
 /* The workspace's case and state, to return to. */
 typedef struct fg_film_mark {
@@ -66,6 +77,11 @@ fg_status fg_film_mark_open(fg_context *ctx, const fg_film_workspace *workspace,
                             fg_film_mark *mark);
 void fg_film_mark_return(const fg_film_mark *mark, fg_film_workspace *workspace);
 void fg_film_mark_close(fg_film_mark *mark);
+
+/* On from the workspace's case and state, to whichever film that leads. */
+fg_status fg_film_change_film(fg_context *ctx, const fg_film_report *report,
+                              fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                              double speed_rpm, fg_film_result *result);
 
 /* On from the workspace's case and state along one film: where it touches, ends, or gives way to
  * another one behind a gap between pads, the outcome is none or touching, and case and state stay.

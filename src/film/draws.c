@@ -92,6 +92,19 @@ static void draw_foils(const fg_film_report *r, const fg_film_stock *stock, size
   }
 }
 
+/* On from the perfect bearing's film; where none is found so that a rotor rests on, from rotors
+ * held at places. Without one the first result stands. */
+static fg_status find_film(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
+                           const fg_film_bearing *bearing, fg_film_result *result) {
+  fg_film_result other;
+  double rpm = r->options.speed_rpm;
+  FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, rpm, FG_FILM_ONWARD, result));
+  if (result->outcome != FG_FILM_UNSOLVED && !fg_film_falls_off(result)) return FG_OK;
+  FG_TRY(fg_film_solve_from_places(ctx, r, workspace, bearing, rpm, &other));
+  if (other.outcome != FG_FILM_UNSOLVED && !fg_film_falls_off(&other)) *result = other;
+  return FG_OK;
+}
+
 /* Of a tolerance's trial only the side of the threshold is asked. */
 static fg_status solve_drawn(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
                              const fg_film_bearing *bearing, fg_film_result *result) {
@@ -100,8 +113,7 @@ static fg_status solve_drawn(fg_context *ctx, const draw_task *t, fg_film_worksp
   bool asked = isfinite(r->tolerance.threshold_rpm) && !t->scatter && !t->measured;
   *result = (fg_film_result){.outcome = FG_FILM_UNSOLVED, .mass_over_perfect = NAN};
   if (!(t->spread_mm > 0)) {
-    FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, r->options.speed_rpm, FG_FILM_ONWARD,
-                                 result));
+    FG_TRY(find_film(ctx, r, workspace, bearing, result));
     result->mass_over_perfect = result->critical_mass_kg / r->perfect.critical_mass_kg;
   }
   if (asked) FG_TRY(fg_film_find_side(ctx, r, workspace, bearing, &side));

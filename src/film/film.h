@@ -111,6 +111,10 @@ fg_status fg_film_follow(fg_context *ctx, fg_film *film, const fg_film_case *fro
 fg_status fg_film_solve(fg_context *ctx, fg_film *film, const fg_film_case *at,
                         fg_film_state *state);
 
+/* Solves a case from a rotor that is held at a place until its film is known. */
+fg_status fg_film_solve_from_place(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                   const double place[2], fg_film_state *state);
+
 /* Impedance of the film against a rotor that moves as exp(s tau): force over displacement; s = i
  * ratio of a whirl at `ratio` times the speed, Z = K + i ratio C. The system must be assembled at
  * the steady state. */
@@ -123,14 +127,33 @@ fg_status fg_film_eigenvalues(fg_context *ctx, fg_film *film, const fg_film_case
                               double complex s, const double complex *near,
                               double complex value[FG_FILM_ROOTS]);
 
+enum { FG_FILM_TRACE_MAX = 256 };
+typedef struct fg_film_trace_point {
+  double ratio;
+  double complex value[FG_FILM_ROOTS];
+} fg_film_trace_point;
+typedef struct fg_film_trace {
+  fg_film_trace_point point[FG_FILM_TRACE_MAX];
+  size_t count;
+} fg_film_trace;
+/* Follows both eigenvalues over the ratio of whirl, in at least so many steps of one factor. */
+fg_status fg_film_trace_eigenvalues(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                    const double ratios[2], int steps, fg_film_trace *trace);
+
 /* The mass (of `M omega² C / (p_a R²)`) at which the rotor on this film begins to whirl, 0 where
  * every rotor does, and the ratio of whirl; infinite, and NaN, where none does between the ratios.
- * Rotors heavier than `stable_again` do not whirl (infinite: all do). */
+ * Rotors heavier than `stable_again` do not whirl (infinite: all do). A film that no rotor rests
+ * on, as each falls off its place without a whirl, has mass 0 and ratio 0. */
 typedef struct fg_film_threshold {
   double mass, stable_again, ratio;
 } fg_film_threshold;
 fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                  const fg_film_state *state, fg_film_threshold *threshold);
+
+/* Finds out whether a rotor of every mass falls off its place, without a whirl; assembles the
+ * system. */
+fg_status fg_film_find_fall(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                            const fg_film_state *state, bool *falls);
 
 /* Oscillating motions exp(s tau) of a rotor of this mass on its film, the least stable one first:
  * eigenvalues of film and rotor together. */

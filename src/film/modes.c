@@ -11,8 +11,8 @@
 #include "film/bearing.h"
 
 /* Ratios of whirl from which roots are sought: heavy rotors whirl far below the speed. */
-static const double ratio_low = 1e-3, ratio_high = 1e2;
-enum { POINTS = 41, ITERATIONS_MAX = 30 };
+static const double ratios[] = {1e-3, 1e2};
+enum { STEPS = 40, ITERATIONS_MAX = 30 };
 /* A start may turn this much faster or slower than its point. */
 static const double near_factor = 1.6;
 static const double root_close = 1e-10; /* last step over the root */
@@ -51,7 +51,7 @@ static fg_status refine_root(fg_context *ctx, const root_search *search, double 
     before = now;
     f_before = f;
     now += step;
-    if (!isfinite(creal(now)) || !isfinite(cimag(now)) || cabs(now) > 2 * ratio_high) return FG_OK;
+    if (!isfinite(creal(now)) || !isfinite(cimag(now)) || cabs(now) > 2 * ratios[1]) return FG_OK;
     *known = cabs(step) < root_close * cabs(now);
   }
   *s = now;
@@ -115,19 +115,15 @@ static fg_status search_from(fg_context *ctx, const root_search *search, double 
 fg_status fg_film_find_motions(fg_context *ctx, fg_film *film, const fg_film_case *at,
                                const fg_film_state *state, double mass, fg_film_motions *motions) {
   const root_search search = {film, at, mass, motions};
-  double complex before[FG_FILM_ROOTS] = {0}, now[FG_FILM_ROOTS];
-  double ratio_before = 0;
+  fg_film_trace trace;
   motions->count = 0;
   fg_film_assemble(ctx, film, at, state);
-  for (int i = 0; i < POINTS; i++) {
-    double ratio = ratio_low * pow(ratio_high / ratio_low, (double)i / (POINTS - 1));
-    FG_TRY(fg_film_eigenvalues(ctx, film, at, I * ratio, i ? before : NULL, now));
-    for (int k = 0; k < FG_FILM_ROOTS && i; k++)
-      FG_TRY(search_from(ctx, &search, ratio, now[k],
-                         (now[k] - before[k]) / (I * (ratio - ratio_before))));
-    ratio_before = ratio;
-    before[0] = now[0];
-    before[1] = now[1];
+  FG_TRY(fg_film_trace_eigenvalues(ctx, film, at, ratios, STEPS, &trace));
+  for (size_t i = 1; i < trace.count; i++) {
+    const fg_film_trace_point *low = &trace.point[i - 1], *high = &trace.point[i];
+    for (int k = 0; k < FG_FILM_ROOTS; k++)
+      FG_TRY(search_from(ctx, &search, high->ratio, high->value[k],
+                         (high->value[k] - low->value[k]) / (I * (high->ratio - low->ratio))));
   }
   return FG_OK;
 }
@@ -153,5 +149,6 @@ fg_status fg_film_find_modes(fg_context *ctx, const fg_film_report *r, fg_film_w
   for (size_t i = 0; i < motions.count; i++)
     modes->mode[i] = mode_of(&motions.motion[i], result->speed_rpm);
   if (modes->count) result->log_decrement = modes->mode[0].log_decrement;
+  if (fg_film_falls_off(result)) result->log_decrement = -INFINITY;
   return FG_OK;
 }

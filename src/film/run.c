@@ -60,6 +60,34 @@ static fg_status keep_field(fg_context *ctx, fg_film_report *r, const fg_film_wo
   return FG_OK;
 }
 
+/* Returns true for a film that the rotor is stable on, where it is not on the other one, or else
+ * for the thicker one. */
+static bool is_better(const fg_film_report *r, const fg_film_result *film,
+                      const fg_film_result *other) {
+  double mass_kg = r->options.rotor_mass_kg;
+  bool stable = fg_film_is_stable(film, mass_kg), other_is = fg_film_is_stable(other, mass_kg);
+  return stable != other_is ? stable : film->min_film_um > other->min_film_um;
+}
+
+/* Seeks another film at the same load and speed, with the rotor at another place, and takes the
+ * better one of both. */
+static fg_status choose_film(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace,
+                             const fg_film_bearing *bearing, fg_film_result *at) {
+  fg_film_mark first;
+  fg_film_result other, own = *at;
+  r->has_other_film = false;
+  if (at->outcome != FG_FILM_SOLVED) return FG_OK;
+  FG_TRY(fg_film_mark_open(ctx, workspace, &first));
+  fg_status status = fg_film_seek_beside(ctx, r, workspace, bearing, first.state.place, &other,
+                                         &r->has_other_film);
+  bool changes = r->has_other_film && is_better(r, &other, at);
+  if (r->has_other_film) *(changes ? at : &r->other_film) = other;
+  if (changes) r->other_film = own;
+  if (!changes) fg_film_mark_return(&first, workspace);
+  fg_film_mark_close(&first);
+  return status;
+}
+
 static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace,
                                const fg_film_bearing *perfect) {
   FG_TRY(fg_film_seek_film(ctx, r, workspace, perfect, r->options.speed_rpm, &r->perfect));
@@ -68,6 +96,7 @@ static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_works
                    "the design's bearing has no film at %g N and %g rpm: lower the load, raise the "
                    "speed, or state another clearance or compliance",
                    r->options.load_n, r->options.speed_rpm);
+  FG_TRY(choose_film(ctx, r, workspace, perfect, &r->perfect));
   r->perfect.mass_over_perfect = 1;
   fg_film_modes unused;
   return fg_film_find_modes(ctx, r, workspace, &r->perfect, &unused);
@@ -89,8 +118,11 @@ bool fg_film_is_measured(const fg_film_options *options) {
 
 /* From the lowest speed on, where the search for it ends, a measured lift-off is compared. */
 static fg_status find_limits(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
-  FG_TRY(fg_film_find_capacity(ctx, r, workspace));
-  return fg_film_hold_lift_off(ctx, r, workspace);
+  workspace->steady_only = true;
+  fg_status status = fg_film_find_capacity(ctx, r, workspace);
+  if (status == FG_OK) status = fg_film_hold_lift_off(ctx, r, workspace);
+  workspace->steady_only = false;
+  return status;
 }
 
 /* Studies of the bearing, to which the workspace's state belongs: each goes on from there. */
@@ -122,6 +154,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
     fg_film_add_bore(r, &r->bearing);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
                                  FG_FILM_ONWARD, &r->at));
+    FG_TRY(choose_film(ctx, r, workspace, &r->bearing, &r->at));
     r->at.mass_over_perfect = r->at.critical_mass_kg / r->perfect.critical_mass_kg;
     if (r->at.outcome != FG_FILM_UNSOLVED) FG_TRY(fg_film_find_uncertainty(ctx, r, workspace));
   }
@@ -140,7 +173,9 @@ fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_op
                              .threshold_rpm = NAN,
                              .threshold_eigen_rpm = NAN,
                              .load_capacity_n = NAN,
-                             .lift_off_rpm = NAN};
+                             .lift_off_rpm = NAN,
+                             .film_ends_n = NAN,
+                             .film_ends_rpm = NAN};
   FG_TRY(fg_film_describe(ctx, report, &report->bearing));
   FG_TRY(fg_film_workspace_open(ctx, report, &workspace));
   fg_status status = run_bearings(ctx, report, &workspace);

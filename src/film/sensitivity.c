@@ -75,25 +75,33 @@ void fg_film_change_bump(const fg_film_sensitivity *s, double pct, size_t bump,
   bearing->stiffness_n_mm2[bump] *= exp(pct / 100 * s->stiffness_pct_per_pct);
 }
 
+static fg_status find_changes(fg_context *ctx, const fg_film_report *r,
+                              const fg_film_bearing *perfect, fg_film_workspace *workspace,
+                              const fg_film_mark *solved, fg_film_sensitivity *s) {
+  double mass[2];
+  FG_TRY(find_slopes(ctx, r, s));
+  for (int side = 0; side < 2; side++) {
+    fg_film_mark_return(solved, workspace);
+    FG_TRY(solve_changed(ctx, r, perfect, workspace, s, side ? step_pct : -step_pct, &mass[side]));
+  }
+  s->mass_pct_per_pct = 100 * log(mass[1] / mass[0]) / (2 * step_pct);
+  fg_film_mark_return(solved, workspace);
+  return FG_OK;
+}
+
 fg_status fg_film_find_sensitivities(fg_context *ctx, fg_film_report *r,
                                      const fg_film_bearing *perfect, fg_film_workspace *workspace) {
+  fg_film_mark solved;
   if (!r->options.sensitivity) return FG_OK;
-  for (int i = 0; i < FG_FILM_PARAMETERS; i++) {
-    fg_film_sensitivity *s = &r->sensitivity[i];
-    double mass[2];
-    s->parameter = (fg_film_parameter)i;
-    FG_TRY(find_slopes(ctx, r, s));
-    for (int side = 0; side < 2; side++)
-      FG_TRY(
-          solve_changed(ctx, r, perfect, workspace, s, side ? step_pct : -step_pct, &mass[side]));
-    s->mass_pct_per_pct = 100 * log(mass[1] / mass[0]) / (2 * step_pct);
+  FG_TRY(fg_film_mark_open(ctx, workspace, &solved));
+  fg_status status = FG_OK;
+  for (int i = 0; i < FG_FILM_PARAMETERS && status == FG_OK; i++) {
+    r->sensitivity[i].parameter = (fg_film_parameter)i;
+    status = find_changes(ctx, r, perfect, workspace, &solved, &r->sensitivity[i]);
+    if (status == FG_OK)
+      status = fg_film_draw_scatter(ctx, r, perfect, workspace, &r->sensitivity[i]);
   }
-  /* Back to the perfect bearing, for those who go on from it. */
-  fg_film_result unused;
-  FG_TRY(fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, FG_FILM_ONWARD,
-                               &unused));
-  for (int i = 0; i < FG_FILM_PARAMETERS; i++)
-    FG_TRY(fg_film_draw_scatter(ctx, r, perfect, workspace, &r->sensitivity[i]));
+  fg_film_mark_close(&solved);
   r->sensitivities = FG_FILM_PARAMETERS;
-  return FG_OK;
+  return status;
 }

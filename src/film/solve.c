@@ -56,6 +56,16 @@ static double find_power(const fg_film_report *r, const fg_film_workspace *b, do
   return unit * speed * fg_film_torque(&b->film, &b->at, &b->state);
 }
 
+/* The critical mass; where it is not asked, whether there is one. */
+static fg_status find_threshold(fg_context *ctx, fg_film_workspace *b,
+                                fg_film_threshold *threshold) {
+  bool falls;
+  if (!b->steady_only) return fg_film_find_threshold(ctx, &b->film, &b->at, &b->state, threshold);
+  FG_TRY(fg_film_find_fall(ctx, &b->film, &b->at, &b->state, &falls));
+  *threshold = (fg_film_threshold){falls ? 0 : NAN, falls ? INFINITY : NAN, falls ? 0 : NAN};
+  return FG_OK;
+}
+
 static fg_status fill_result(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
                              fg_film_result *result) {
   const double *place = b->state.place;
@@ -69,7 +79,7 @@ static fg_status fill_result(fg_context *ctx, const fg_film_report *r, fg_film_w
   result->power_w = find_power(r, b, result->speed_rpm);
   result->outcome =
       result->min_film_um < r->options.touching_um ? FG_FILM_TOUCHING : FG_FILM_SOLVED;
-  FG_TRY(fg_film_find_threshold(ctx, &b->film, &b->at, &b->state, &threshold));
+  FG_TRY(find_threshold(ctx, b, &threshold));
   double unit_kg = fg_film_mass_unit_kg(r, result->speed_rpm);
   result->critical_mass_kg = threshold.mass * unit_kg;
   result->stable_again_kg = threshold.stable_again * unit_kg;
@@ -105,36 +115,6 @@ fg_status fg_film_solve_bearing(fg_context *ctx, const fg_film_report *report, f
   return fill_result(ctx, report, b, result);
 }
 
-/* Speeds of a faster rotor, whose film is thicker, over that which is sought. */
-static const double faster[] = {1.1, 4};
-
-static fg_status solve_from_faster(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
-                                   const fg_film_bearing *bearing, double speed_rpm,
-                                   fg_film_result *result) {
-  for (size_t i = 0; i < sizeof faster / sizeof *faster; i++) {
-    FG_TRY(
-        fg_film_solve_bearing(ctx, r, b, bearing, faster[i] * speed_rpm, FG_FILM_AFRESH, result));
-    if (result->outcome == FG_FILM_UNSOLVED) continue;
-    FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result));
-    if (result->outcome == FG_FILM_SOLVED) return FG_OK;
-  }
-  return FG_OK;
-}
-
-fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
-                            const fg_film_bearing *bearing, double speed_rpm,
-                            fg_film_result *result) {
-  fg_film_result other;
-  FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_AFRESH, result));
-  if (result->outcome == FG_FILM_SOLVED) return FG_OK;
-  FG_TRY(solve_from_faster(ctx, r, b, bearing, speed_rpm, &other));
-  bool gained = other.outcome < result->outcome && other.speed_rpm == speed_rpm;
-  if (!gained) /* back to the first */
-    return fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_AFRESH, result);
-  *result = other;
-  return FG_OK;
-}
-
 fg_status fg_film_mark_open(fg_context *ctx, const fg_film_workspace *b, fg_film_mark *mark) {
   *mark = (fg_film_mark){0};
   FG_TRY(fg_film_state_open(ctx, &b->film, &mark->state));
@@ -158,6 +138,12 @@ void fg_film_mark_close(fg_film_mark *mark) {
   fg_film_case_close(&mark->before);
 }
 
+fg_status fg_film_change_film(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+                              const fg_film_bearing *bearing, double speed_rpm,
+                              fg_film_result *result) {
+  return fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result);
+}
+
 /* Max move of the rotor across its direction, over C, that a short step of one film makes. */
 static const double across_max = 0.15;
 
@@ -174,7 +160,8 @@ fg_status fg_film_keep_film(fg_context *ctx, const fg_film_report *r, fg_film_wo
   fg_film_state_copy(&b->film, &b->state, &b->spare);
   fg_film_case_copy(&b->before, columns, &b->spare_before);
   FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result));
-  if (result->outcome == FG_FILM_SOLVED && has_jumped(b)) result->outcome = FG_FILM_UNSOLVED;
+  if (result->outcome == FG_FILM_SOLVED && (has_jumped(b) || fg_film_falls_off(result)))
+    result->outcome = FG_FILM_UNSOLVED;
   if (result->outcome == FG_FILM_SOLVED) return FG_OK;
   fg_film_state_copy(&b->film, &b->spare, &b->state);
   fg_film_case_copy(&b->spare_before, columns, &b->before);

@@ -211,3 +211,14 @@ fg_status fg_film_solve(fg_context *ctx, fg_film *film, const fg_film_case *at,
   fg_film_case_close(&centred);
   return status;
 }
+
+fg_status fg_film_solve_from_place(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                   const double place[2], fg_film_state *state) {
+  set_ambient(film, state);
+  for (int k = 0; k < 2; k++)
+    state->place[k] = place[k];
+  lift_foil(film, at, state);
+  if (!has_film(film, at, state)) return fail_to_converge(ctx);
+  FG_TRY(fg_film_newton(ctx, film, at, FG_FILM_PRESSURE, state));
+  return fg_film_newton(ctx, film, at, FG_FILM_BALANCE, state);
+}

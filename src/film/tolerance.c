@@ -120,17 +120,27 @@ static fg_status find_tolerances(fg_context *ctx, fg_film_report *r, const fg_fi
   return FG_OK;
 }
 
+/* The threshold speed as designed, and tolerances on from the same film. */
+static fg_status find_threshold_and_tolerances(fg_context *ctx, fg_film_report *r,
+                                               const fg_film_bearing *perfect,
+                                               fg_film_workspace *workspace,
+                                               const fg_film_mark *solved) {
+  FG_TRY(fg_film_find_threshold_speed(ctx, r, workspace, perfect, &r->tolerance.threshold_rpm));
+  fg_film_mark_return(solved, workspace);
+  if (isnan(r->tolerance.threshold_rpm)) return FG_OK;
+  FG_TRY(find_tolerances(ctx, r, perfect, workspace));
+  fg_film_mark_return(solved, workspace);
+  return FG_OK;
+}
+
 fg_status fg_film_find_tolerance(fg_context *ctx, fg_film_report *r, const fg_film_bearing *perfect,
                                  fg_film_workspace *workspace) {
-  fg_film_result unused;
-  fg_film_start start = FG_FILM_AFRESH;
+  fg_film_mark solved;
   r->tolerance = (fg_film_tolerance){false, NAN, NAN, NAN, {NAN, NAN}};
   if (isnan(r->options.within_pct)) return FG_OK;
   r->tolerance.asked = true;
-  FG_TRY(fg_film_find_threshold_speed(ctx, r, workspace, perfect, &r->tolerance.threshold_rpm));
-  /* Back to the perfect bearing, for those who go on from it. */
-  FG_TRY(fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, start, &unused));
-  if (isnan(r->tolerance.threshold_rpm)) return FG_OK;
-  FG_TRY(find_tolerances(ctx, r, perfect, workspace));
-  return fg_film_solve_bearing(ctx, r, workspace, perfect, r->options.speed_rpm, start, &unused);
+  FG_TRY(fg_film_mark_open(ctx, workspace, &solved));
+  fg_status status = find_threshold_and_tolerances(ctx, r, perfect, workspace, &solved);
+  fg_film_mark_close(&solved);
+  return status;
 }

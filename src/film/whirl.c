@@ -13,8 +13,8 @@
 
 /* Ratios of whirl that are searched: gas films whirl near one half of the speed, foils with
  * stiffness of their own below. */
-static const double ratio_low = 0.02, ratio_high = 1.5;
-enum { RATIOS = 14, REFINEMENTS = 20 };
+static const double ratios[] = {0.02, 1.5};
+enum { STEPS = 13, REFINEMENTS = 20 };
 static const double ratio_close = 1e-7;
 
 static void force_of_response(const fg_film *film, const double complex *vector,
@@ -130,7 +130,7 @@ static void add_border(const border *found, border *borders, size_t *count) {
   ++*count;
 }
 
-/* The lightest unstable rotor, and the heaviest of those that go on from it. */
+/* The lightest unstable rotor, and the heaviest one. */
 static fg_film_threshold read_borders(const border *borders, size_t count) {
   fg_film_threshold threshold = {INFINITY, INFINITY, NAN};
   int growing = 0;
@@ -141,35 +141,55 @@ static fg_film_threshold read_borders(const border *borders, size_t count) {
       threshold.mass = borders[i].mass;
       threshold.ratio = borders[i].ratio;
     }
-    if (growing <= 0 && isfinite(threshold.mass)) {
-      threshold.stable_again = borders[i].mass;
-      break;
-    }
+    if (isfinite(threshold.mass)) threshold.stable_again = growing > 0 ? INFINITY : borders[i].mass;
   }
   return threshold;
 }
 
-fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
-                                 const fg_film_state *state, fg_film_threshold *threshold) {
-  double complex before[FG_FILM_ROOTS] = {0}, now[FG_FILM_ROOTS];
-  double ratio_before = ratio_low;
-  border borders[BORDERS_MAX];
-  size_t count = 0;
+/* No rotor rests where the stiffness without a whirl has a determinant below 0: M s² + Z(s) = 0 has
+ * a root s above 0 at every mass. Such a film lies between two others, on either side. */
+fg_status fg_film_find_fall(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                            const fg_film_state *state, bool *falls) {
+  double complex z[2][2];
+  fg_film_case lossless = *at;
+  lossless.loss = 0; /* of bumps that whirl */
   fg_film_assemble(ctx, film, at, state);
-  for (int i = 0; i < RATIOS; i++) {
-    double ratio = ratio_low * pow(ratio_high / ratio_low, (double)i / (RATIOS - 1));
-    FG_TRY(fg_film_eigenvalues(ctx, film, at, I * ratio, i ? before : NULL, now));
-    for (int k = 0; k < FG_FILM_ROOTS && i; k++) {
-      if ((cimag(before[k]) < 0) == (cimag(now[k]) < 0)) continue;
-      crossing c = {ratio_before, ratio, {before[0], before[1]}, {now[0], now[1]}, k};
+  FG_TRY(fg_film_impedance(ctx, film, &lossless, 0, z));
+  *falls = creal(z[0][0] * z[1][1] - z[0][1] * z[1][0]) < 0;
+  return FG_OK;
+}
+
+/* Borders where an eigenvalue of the trace passes the real axis. */
+static fg_status find_borders(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                              const fg_film_trace *trace, border *borders, size_t *count) {
+  for (size_t i = 1; i < trace->count; i++) {
+    const fg_film_trace_point *low = &trace->point[i - 1], *high = &trace->point[i];
+    for (int k = 0; k < FG_FILM_ROOTS; k++) {
+      if ((cimag(low->value[k]) < 0) == (cimag(high->value[k]) < 0)) continue;
+      crossing c = {low->ratio,
+                    high->ratio,
+                    {low->value[0], low->value[1]},
+                    {high->value[0], high->value[1]},
+                    k};
       border found;
       FG_TRY(refine_crossing(ctx, film, at, &c, &found));
-      add_border(&found, borders, &count);
+      add_border(&found, borders, count);
     }
-    ratio_before = ratio;
-    before[0] = now[0];
-    before[1] = now[1];
   }
+  return FG_OK;
+}
+
+fg_status fg_film_find_threshold(fg_context *ctx, fg_film *film, const fg_film_case *at,
+                                 const fg_film_state *state, fg_film_threshold *threshold) {
+  border borders[BORDERS_MAX];
+  size_t count = 0;
+  fg_film_trace trace;
+  bool falls;
+  FG_TRY(fg_film_find_fall(ctx, film, at, state, &falls));
+  *threshold = (fg_film_threshold){.mass = 0, .stable_again = INFINITY, .ratio = 0};
+  if (falls) return FG_OK;
+  FG_TRY(fg_film_trace_eigenvalues(ctx, film, at, ratios, STEPS, &trace));
+  FG_TRY(find_borders(ctx, film, at, &trace, borders, &count));
   *threshold = read_borders(borders, count);
   return FG_OK;
 }

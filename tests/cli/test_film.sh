@@ -56,19 +56,24 @@ for e in r["eigenvalues"]:
 assert least["direction"] == "forward" and math.isclose(least["whirl_ratio"], r["bearing"]["whirl_ratio"], rel_tol=0.02)
 END
 
-# No rotor is light enough for a film whose equivalent stiffness is below 0: eigenvalues agree, and the threshold lies below lift-off.
-expect 0 "whirls as soon as it has lifted off" "$program" film design.json --load 20 --speed 20000 --clearance 80 --compliance 0.67 \
-  --mesh 6,8 --speeds 16837:19500:8 -o every.json --html every.html --table -
+# No rotor is light enough for a film whose equivalent stiffness is below 0, nor for one that it falls off: eigenvalues agree.
+expect 0 "" "$program" film design.json --load 20 --speed 20000 --clearance 80 --compliance 0.67 --touching 13 --mesh 6,8 \
+  --speeds 16837:19500:8 -o every.json
 checks - every.json <<'END' || fail "rotors of every mass"
 import json, sys
 r = json.load(open(sys.argv[1]))
-known = [s for s in r["speeds"] if s["stability"] and s["log_decrement"] is not None]
-for s in known:
-    assert (s["log_decrement"] > 0) == s["stability"].startswith("stable"), s
-words = {s["stability"] for s in known}
-assert {"stable at every mass", "unstable at every mass", "unstable"} <= words, words
-assert all((s["critical_mass_kg"] == 0) == (s["stability"] == "unstable at every mass") for s in known)
-assert r["threshold_rpm"] <= r["lift_off_rpm"] < 19500, r
+for s in r["speeds"]:
+    assert (s["critical_mass_kg"] == 0) == (s["stability"] == "unstable at every mass"), s
+    assert (s["log_decrement"] is None) == (s["whirl_ratio"] == 0) and not (s["log_decrement"] or -1) > 0, s
+words = [s["stability"] for s in r["speeds"] if s["whirl_ratio"] != 0]
+assert {"unstable at every mass", "unstable"} == set(words) and len(words) < 8, words
+END
+# A threshold below lift-off.
+expect 0 "whirls as soon as it has lifted off" "$program" film --load 5 --speed 20000 --touching 20 --mesh 2,4 --speeds 3000:20000:9 -o whirls.json --table -
+checks - whirls.json <<'END' || fail "a threshold below lift-off"
+import json, sys
+r = json.load(open(sys.argv[1]))
+assert r["threshold_rpm"] < r["lift_off_rpm"] < 12000 and r["speeds"][0]["outcome"] == "touching", r
 END
 # The map of speeds moves no limit of the bearing: the search for limits begins at its own film.
 expect 0 "" "$program" film design.json --load 40 --speed 60000 --mesh 2,4 --speeds 50000:70000:2 -o few.json
@@ -78,6 +83,45 @@ import json
 few, many = (json.load(open(name)) for name in ("few.json", "many.json"))
 assert few["load_capacity_n"] > 41 and few["lift_off_rpm"] < 55000, few
 assert (few["load_capacity_n"], few["lift_off_rpm"]) == (many["load_capacity_n"], many["lift_off_rpm"])
+END
+
+# Two films under one load: the load capacity is that of either, and a heavier rotor lifts off no earlier.
+few="--mesh 2,4 --speeds 5000:5100:2"
+for at in 5_5000 20_5000 5_60000 40_60000; do
+  expect 0 "" "$program" film --load ${at%_*} --speed ${at#*_} $few -o at_$at.json
+done
+expect 0 "This film ends at .* N as the load rises, and at .* rpm" "$program" film --load 5 --speed 60000 $few --table -
+expect 0 "Another film is there at this load and speed" "$program" film --load 5 --speed 5000 $few --html two.html --table -
+# A map of speeds goes through the bearing's own film, and its threshold is the end of that.
+expect 0 "" "$program" film --load 5 --speed 5000 --mesh 2,4 --speeds 2500:10000:5 -o through.json
+grep -q 'the same, another film' two.html || fail "the page lacks the other film"
+valid film.schema.json at_5_5000.json
+checks - <<'END' || fail "two films under one load"
+import json
+light, heavy, fast, faster = (json.load(open(f"at_{n}.json")) for n in ("5_5000", "20_5000", "5_60000", "40_60000"))
+own, other = light["bearing"], light["other_film"]
+assert own["stability"] == "stable" and other["stability"] == "unstable", (own, other)
+assert abs(own["attitude_deg"] - other["attitude_deg"]) > 30, (own, other)
+assert "other_film" not in fast and "other_film" not in heavy
+for one, two in ((light, heavy), (fast, faster)):
+    assert abs(one["load_capacity_n"] / two["load_capacity_n"] - 1) < 0.01, (one["load_capacity_n"], two["load_capacity_n"])
+assert fast["film_ends_n"] < 0.5 * fast["load_capacity_n"] and faster["film_ends_n"] is None, fast["film_ends_n"]
+map_of = json.load(open("through.json"))
+for s in map_of["speeds"]:
+    assert s["speed_rpm"] != 5000 or abs(s["eccentricity_ratio"] / map_of["bearing"]["eccentricity_ratio"] - 1) < 1e-6, s
+assert 7000 < map_of["threshold_rpm"] < 9500 and abs(map_of["threshold_eigen_rpm"] / map_of["threshold_rpm"] - 1) < 4e-4, map_of["threshold_rpm"]
+assert fast["lift_off_rpm"] < min(faster["lift_off_rpm"], 0.5 * fast["film_ends_rpm"]), (fast["lift_off_rpm"], faster["lift_off_rpm"])
+END
+
+# A film that resonates with the whirl: an eigenvalue of its impedance passes the real axis and back within a fifth of the ratio.
+expect 0 "orbit in time: grows" "$program" film --load 4.44 --speed 12335 --clearance 20 --compliance 2 --pads 0 --load-angle 180 --top-foil sagging \
+  --top-foil-thickness 0.1 --mesh 2,4 --speeds 10000:36000:4 --orbit 40 -o resonant.json --table -
+checks - resonant.json <<'END' || fail "a film that resonates"
+import json, sys
+r = json.load(open(sys.argv[1]))
+for s in [r["bearing"], *r["speeds"]]:
+    assert (s["log_decrement"] > 0) == s["stability"].startswith("stable"), s
+assert r["bearing"]["stability"] == "unstable" and abs(r["threshold_rpm"] / r["threshold_eigen_rpm"] - 1) < 2e-4, r["threshold_rpm"]
 END
 
 # Draws hang on their seed and number alone, and shims of no height are the perfect bearing.
@@ -94,7 +138,7 @@ import json
 q = json.load(open("mixed.json"))["draws"]["mass_over_perfect"]
 assert all(v is None or v < 1e6 for v in q.values()), q
 END
-expect 0 "median 3.91, at 75 % stable at every mass" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 \
+expect 0 "median 1.59, at 75 % stable at every mass" "$program" film --load 40 --speed 120000 --clearance 80 --compliance 0.67 --mesh 2,4 --bumps 7 \
   --speeds 120000:121000:2 --shims=-50:50 --draws 8 --seed 7 --table -
 
 # Draws that are kept: a run goes on from them, whatever line a kill has cut off; shards joined by cat are the whole; of other settings
@@ -287,12 +331,12 @@ expect 65 "2 bearings; test the one" "$program" film $fast --foils bad.json
 # Near lift-off a film may lie before or behind the gap between two pads, and one path meets one of both: no speed of the map between two
 # that have a film is without.
 no_gaps() {
-  expect 0 "" "$program" film $fast --speeds 3500:6000:60 --speeds-out gaps.csv -o gaps.json
+  expect 0 "" "$program" film $fast --speeds 300:6000:60 --speeds-out gaps.csv -o gaps.json
   checks - gaps.csv <<'END' || fail "gaps of the map"
 import csv, sys
 outcomes = [row["outcome"] for row in csv.DictReader(open(sys.argv[1]))]
 first = next(i for i, o in enumerate(outcomes) if o != "unsolved")
-assert 5 < first < 30 and "unsolved" not in outcomes[first:], outcomes
+assert 3 < first < 30 and "unsolved" not in outcomes[first:], outcomes
 END
 }
 brief || no_gaps

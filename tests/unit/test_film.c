@@ -222,6 +222,29 @@ static void eigenvalues_have_the_same_threshold(void **unused) {
   close_bearing(&b);
 }
 
+/* Three films under one load: from the one between the others every rotor falls, though none of its
+ * whirls grows. */
+static void no_rotor_rests_between_two_films(void **unused) {
+  (void)unused;
+  static const double places[3][2] = {{0.81, 0.276}, {0.786, -0.193}, {0.557, -0.625}};
+  bearing b;
+  fg_film_threshold found;
+  fg_film_mesh mesh = pads_of(3, 18, 4);
+  mesh.start_rad = -20 * pi / 540;
+  open_bearing(&b, &mesh, 0.05352, 0.3492);
+  b.at.load[1] = -0.12337;
+  for (int i = 0; i < 3; i++) {
+    bool falls;
+    assert_int_equal(fg_film_solve_from_place(&b.ctx, &b.film, &b.at, places[i], &b.state), FG_OK);
+    assert_true(hypot(b.state.place[0] - places[i][0], b.state.place[1] - places[i][1]) < 0.02);
+    assert_int_equal(fg_film_find_fall(&b.ctx, &b.film, &b.at, &b.state, &falls), FG_OK);
+    assert_int_equal(fg_film_find_threshold(&b.ctx, &b.film, &b.at, &b.state, &found), FG_OK);
+    assert_int_equal(falls, i == 1);
+    assert_int_equal(found.mass == 0 && found.ratio == 0, i == 1);
+  }
+  close_bearing(&b);
+}
+
 /* A whirl that hardly grows, one that decays, and one that grows within a turn are all found. */
 static void least_stable_whirl_is_the_largest_eigenvalue(void **unused) {
   (void)unused;
@@ -319,6 +342,7 @@ int main(void) {
       cmocka_unit_test(stiffness_is_the_forces_derivative),
       cmocka_unit_test(turning_pattern_and_load_turns_the_rotor),
       cmocka_unit_test(eigenvalues_have_the_same_threshold),
+      cmocka_unit_test(no_rotor_rests_between_two_films),
       cmocka_unit_test(least_stable_whirl_is_the_largest_eigenvalue),
       cmocka_unit_test(orbits_in_time_have_the_same_threshold),
       cmocka_unit_test(top_foil_sags_between_bumps),

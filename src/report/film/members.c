@@ -47,6 +47,7 @@ static const char *find_result_name(const fg_subject *s, char *buffer) {
   (void)buffer;
   const fg_film_report *report = report_of(s);
   if (s->object == &report->perfect) return "as designed";
+  if (s->object == &report->other_film) return "the same, another film";
   return fg_film_is_measured(&report->options) ? "as measured" : "as designed";
 }
 
@@ -121,8 +122,12 @@ const fg_members fg_film_result_members = FG_MEMBERS_DEFINED(result_rows, "resul
 
 bool fg_film_bearing_at(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_film_report *report = report_of(list);
-  element->object = i ? &report->perfect : &report->at;
-  return i < (fg_film_is_measured(&report->options) ? 2 : 1);
+  const fg_film_result *row[3] = {&report->at};
+  size_t rows = 1;
+  if (report->has_other_film) row[rows++] = &report->other_film;
+  if (fg_film_is_measured(&report->options)) row[rows++] = &report->perfect;
+  element->object = row[i < rows ? i : 0];
+  return i < rows;
 }
 
 bool fg_film_speed_at(const fg_subject *list, size_t i, fg_subject *element) {
@@ -372,6 +377,10 @@ static const fg_member bore_rows[] = {
 };
 static const fg_members bore_members = FG_MEMBERS(bore_rows);
 
+static bool has_other_film(const fg_subject *s) {
+  return report_of(s)->has_other_film;
+}
+
 static bool has_bore(const fg_subject *s) {
   return report_of(s)->options.bore != NULL;
 }
@@ -396,6 +405,9 @@ static const fg_member report_rows[] = {
     {FG_GROUP("conditions", &option_members), .words = "as stated, or by default"},
     {FG_OBJECT("bearing", fg_film_report, at, &fg_film_result_members),
      .words = "as measured; without foils as designed"},
+    {FG_OBJECT("other_film", fg_film_report, other_film, &fg_film_result_members),
+     .present = has_other_film,
+     .words = "of the bearing, with the rotor at another place, at the same load and speed"},
     {FG_OBJECT("perfect", fg_film_report, perfect, &fg_film_result_members),
      .words = "as designed"},
     {FG_NUMBER("threshold_rpm", fg_film_report, threshold_rpm),
@@ -406,9 +418,14 @@ static const fg_member report_rows[] = {
      .options = FG_MEMBER_ON_LINE,
      .words = "whirls of the rotor on its film by itself, the least stable first"},
     {FG_NUMBER("load_capacity_n", fg_film_report, load_capacity_n),
-     .words = "largest load at this speed with a film of touching_um at least"},
+     .words = "largest load at this speed with any film of touching_um at least"},
     {FG_NUMBER("lift_off_rpm", fg_film_report, lift_off_rpm),
      .words = "lowest speed under this load with such a film"},
+    {FG_NUMBER("film_ends_n", fg_film_report, film_ends_n),
+     .words = "load, rising at this speed, at which the film of this load and speed ends and the "
+              "rotor passes to another one; null: it does not"},
+    {FG_NUMBER("film_ends_rpm", fg_film_report, film_ends_rpm),
+     .words = "speed, falling under this load, at which it does"},
     {FG_OBJECT("lift_off_test", fg_film_report, lift_off, &fg_film_lift_off_members),
      .present = has_lift_off, .words = "lift-off speed as measured, against the bearing's"},
     {FG_ARRAY("coefficients", fg_film_report, frequency, frequencies, &coefficient_members),

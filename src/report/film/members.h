@@ -51,7 +51,7 @@ static inline bool fg_film_whirls_from_lift_off(const fg_film_report *report) {
 /* "stable", "unstable", "stable at every mass" or "unstable at every mass" for the rotor of the report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
 
-enum { FG_FILM_NOTES = 7, FG_FILM_NOTE = 400 };
+enum { FG_FILM_NOTES = 9, FG_FILM_NOTE = 400 };
 /* Writes what the reader must know of this run; returns the number of notes. */
 size_t fg_film_notes(const fg_film_report *report, char notes[FG_FILM_NOTES][FG_FILM_NOTE]);
 

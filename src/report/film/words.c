@@ -115,6 +115,34 @@ void fg_film_tolerance_words(const fg_film_report *r, char *text, size_t size) {
            t->threshold_rpm, r->options.within_pct, each, lower, closer, wider);
 }
 
+static void note_other_film(const fg_film_report *r, char *note) {
+  const fg_film_result *other = &r->other_film;
+  const char *word = fg_film_stability_word(r, other);
+  snprintf(
+      note, FG_FILM_NOTE,
+      "Another film is there at this load and speed: e / C %.3g in place of %.3g, thinnest %.3g um "
+      "in place of %.3g; the rotor is %s on it. Which one it takes hangs on where it comes "
+      "from.",
+      other->eccentricity, r->at.eccentricity, other->min_film_um, r->at.min_film_um,
+      word ? word : "not judged");
+}
+
+/* Says where the rotor passes to another film, on the way to the limits. */
+static void note_film_ends(const fg_film_report *r, char *note) {
+  char load[60] = "", speed[60] = "";
+  if (isfinite(r->film_ends_n))
+    snprintf(load, sizeof load, "at %.3g N as the load rises", r->film_ends_n);
+  if (isfinite(r->film_ends_rpm))
+    snprintf(speed, sizeof speed, "at %.0f rpm as the rotor slows down", r->film_ends_rpm);
+  const char *both = *load && *speed ? ", and " : "";
+  snprintf(note, FG_FILM_NOTE,
+           "This film ends %s%s%s; the rotor passes to another film, which reaches to %s.", load,
+           both, speed,
+           *both   ? "load capacity and lift-off"
+           : *load ? "the load capacity"
+                   : "lift-off");
+}
+
 static void note_uncertainty(const fg_film_report *r, char *note) {
   const fg_film_uncertainty *u = &r->u;
   snprintf(
@@ -155,6 +183,8 @@ size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_
              "The film is thinner than %.3g um: surfaces touch, and what is said of stability "
              "does not hold.",
              o->touching_um);
+  if (r->has_other_film) note_other_film(r, notes[count++]);
+  if (isfinite(r->film_ends_n) || isfinite(r->film_ends_rpm)) note_film_ends(r, notes[count++]);
   if (r->u.draws) note_uncertainty(r, notes[count++]);
   if (r->lift_off.asked) note_lift_off(r, notes[count++]);
   if (r->tolerance.asked) fg_film_tolerance_words(r, notes[count++], FG_FILM_NOTE);
