@@ -10,6 +10,8 @@
  * worth a note. */
 #define FOUND_ERRORS 5.0
 #define NOTED_ERRORS 3.0
+/* Standard uncertainty of a flatbed's scale of which nothing is known. */
+#define UNKNOWN_SCALE 0.003
 
 /* Deviations of the corrected radii from the known ones, um. */
 typedef struct deviations {
@@ -63,7 +65,8 @@ static void put_smallest(double scale, fg_explanations *explanations) {
 fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
   if (!loop->by_evidence || !loop->edge_fit.known_count || holds_scale(&loop->set)) return FG_OK;
   const deviations of = compare_with_known(loop);
-  double smallest = FOUND_ERRORS * of.scatter * loop->tone.u_scale;
+  double u_scale = of.scatter * loop->tone.u_scale, smallest = FOUND_ERRORS * u_scale;
+  if (u_scale < UNKNOWN_SCALE) loop->u_scale = u_scale;
   put_smallest(smallest, &loop->explanations);
   if (fabs(of.mean_um) * sqrt((double)of.count) < NOTED_ERRORS * of.scatter * of.u_um) return FG_OK;
   return fg_scan_loop_bumps_note(

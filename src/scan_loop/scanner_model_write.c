@@ -19,11 +19,20 @@
 static size_t known_diameters(const fg_scan_loop *loop) {
   for (size_t e = 0; e < loop->set.count; e++)
     if (loop->set.effects[e].kind->scales) return loop->edge_fit.known_count;
+  if (loop->u_scale > 0) return loop->edge_fit.known_count;
   for (size_t i = 0; i < loop->result.unclaimeds; i++)
     if (fg_effect_find(loop->result.unclaimed[i].id)->scales &&
         loop->result.unclaimed[i].verdict == FG_LOOP_ABSENT)
       return loop->edge_fit.known_count;
   return 0;
+}
+
+/* A scale that known diameters do not show is 0, and as uncertain as they leave it. */
+static void add_uncertain_scale(double u_scale, fg_field_list *fields) {
+  if (!(u_scale > 0) || fields->count == FG_FIELDS_MAX) return;
+  fg_field field = fg_effect_field(fg_effect_find("scan.scale"));
+  field.u_amplitude_mm[0] = u_scale * FG_FIELD_HALF_MM;
+  fields->fields[fields->count++] = field;
 }
 
 void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_scanner_model *model) {
@@ -47,6 +56,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   fg_scanner_model_take_temperature(&first->design.calibration, made);
   made->tone = loop->tone;
   fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
+  add_uncertain_scale(loop->u_scale, &made->fields);
   for (size_t k = 0; k < loop->tie_count; k++)
     if (!loop->unlikely[k])
       fg_effect_set_fields(&loop->edge_fit, &loop->tie[k], &made->other[made->others++]);
