@@ -263,8 +263,8 @@ typedef enum fg_film_fate {
 extern const char *const fg_film_fate_words[]; /* "decays", "grows", ..., NULL */
 
 /* The rotor's orbit in time about its steady place, after a pulse of 2 % of the load during the
- * first turn. The loss factor has no equation in time: viscous bumps lose as much at the whirl of
- * the critical mass. */
+ * first turn. The loss factor has no equation in time: viscous bumps lose as much at the rotor's
+ * least damped whirl. */
 typedef struct fg_film_orbit {
   fg_film_orbit_place *point;
   size_t count; /* 0: not asked */

@@ -3,6 +3,8 @@
 #ifndef FG_FILM_BEARING_H
 #define FG_FILM_BEARING_H
 
+#include <math.h>
+
 #include "film/film.h"
 #include "foilgauge/film.h"
 #include "foilgauge/stiffness.h"
@@ -30,6 +32,13 @@ double fg_film_mass_unit_kg(const fg_film_report *report, double speed_rpm);
 /* p_a R². */
 double fg_film_load_unit_n(const fg_film_report *report);
 double fg_film_speed_rad_s(double speed_rpm);
+
+/* A critical mass over the perfect bearing's; NaN where that one is stable at every mass, or at
+ * none. */
+static inline double fg_film_mass_over(const fg_film_report *report, double mass_kg) {
+  double perfect_kg = report->perfect.critical_mass_kg;
+  return perfect_kg > 0 && isfinite(perfect_kg) ? mass_kg / perfect_kg : NAN;
+}
 
 /* Mesh, case and state of one thread. */
 typedef struct fg_film_workspace {

@@ -114,7 +114,7 @@ static fg_status solve_drawn(fg_context *ctx, const draw_task *t, fg_film_worksp
   *result = (fg_film_result){.outcome = FG_FILM_UNSOLVED, .mass_over_perfect = NAN};
   if (!(t->spread_mm > 0)) {
     FG_TRY(find_film(ctx, r, workspace, bearing, result));
-    result->mass_over_perfect = result->critical_mass_kg / r->perfect.critical_mass_kg;
+    result->mass_over_perfect = fg_film_mass_over(r, result->critical_mass_kg);
   }
   if (asked) FG_TRY(fg_film_find_side(ctx, r, workspace, bearing, &side));
   result->side = side;
@@ -172,23 +172,23 @@ static void finish_share(fg_film_share *share, size_t of) {
     fg_assembly_interval((double)share->count, (double)of, confidence, &share->low, &share->high);
 }
 
-static void count_draw(fg_film_draws *draws, const fg_film_result *result) {
+static void count_draw(fg_film_draws *draws, const fg_film_result *result, double perfect_kg) {
   draws->within.count += result->side == FG_FILM_WITHIN;
   draws->not_lower.count += result->side == FG_FILM_WITHIN || result->side == FG_FILM_ABOVE;
   if (result->outcome == FG_FILM_UNSOLVED) return;
   draws->solved.count++;
   draws->touching.count += result->outcome == FG_FILM_TOUCHING;
-  draws->more_stable.count += result->mass_over_perfect > 1;
-  draws->less_stable.count += result->mass_over_perfect < 1;
+  draws->more_stable.count += result->critical_mass_kg > perfect_kg;
+  draws->less_stable.count += result->critical_mass_kg < perfect_kg;
 }
 
-static fg_status finish_draws(fg_context *ctx, fg_film_draws *draws) {
+static fg_status finish_draws(fg_context *ctx, const fg_film_report *r, fg_film_draws *draws) {
   void *block;
   size_t known = 0;
   FG_TRY(fg_memory_allocate(ctx, draws->count, sizeof(double), &block));
   double *ratio = block;
   for (size_t i = 0; i < draws->count; i++) {
-    count_draw(draws, &draws->result[i]);
+    count_draw(draws, &draws->result[i], r->perfect.critical_mass_kg);
     double value = draws->result[i].mass_over_perfect;
     if (!isnan(value)) ratio[known++] = fmin(value, large);
   }
@@ -224,7 +224,7 @@ static fg_status solve_all_draws(fg_context *ctx, draw_task *task) {
 static fg_status draw_all(fg_context *ctx, draw_task *task, size_t count) {
   FG_TRY(allocate_draws(ctx, count, task->draws));
   FG_TRY(solve_all_draws(ctx, task));
-  return finish_draws(ctx, task->draws);
+  return finish_draws(ctx, task->report, task->draws);
 }
 
 /* Leaves out draws that are not there. */
@@ -248,7 +248,7 @@ static fg_status draw_with_kept(fg_context *ctx, draw_task *task, size_t count) 
   if (status == FG_OK && closed != FG_OK) return fg_fail(ctx, closed, "%s", inner.message);
   FG_TRY(status);
   drop_missing(task->draws);
-  return finish_draws(ctx, task->draws);
+  return finish_draws(ctx, task->report, task->draws);
 }
 
 fg_status fg_film_draw_scatter(fg_context *ctx, fg_film_report *report,

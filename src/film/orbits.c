@@ -37,13 +37,18 @@ static void keep_orbit(const fg_film_report *r, const fg_film_orbit_point *point
   }
 }
 
+/* The whirl at which viscous bumps lose as much as the loss factor says: the rotor's least damped
+ * one. */
+static double find_loss_ratio(const fg_film_report *r) {
+  return r->modes ? r->mode[0].whirl_ratio : usual_ratio;
+}
+
 static fg_status integrate_report(fg_context *ctx, fg_film_report *r, fg_film_workspace *w,
                                   fg_film_orbit_point *points) {
   fg_film_orbit *orbit = &r->orbit;
-  double whirl = r->at.whirl_ratio;
   const fg_film_orbit_plan plan = {.mass = r->options.rotor_mass_kg /
                                            fg_film_mass_unit_kg(r, r->options.speed_rpm),
-                                   .loss_ratio = isfinite(whirl) ? whirl : usual_ratio,
+                                   .loss_ratio = find_loss_ratio(r),
                                    .pulse = pulse,
                                    .turns = r->options.orbit_turns,
                                    .points_per_turn = POINTS_PER_TURN};

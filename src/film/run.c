@@ -155,7 +155,7 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
                                  FG_FILM_ONWARD, &r->at));
     FG_TRY(choose_film(ctx, r, workspace, &r->bearing, &r->at));
-    r->at.mass_over_perfect = r->at.critical_mass_kg / r->perfect.critical_mass_kg;
+    r->at.mass_over_perfect = fg_film_mass_over(r, r->at.critical_mass_kg);
     if (r->at.outcome != FG_FILM_UNSOLVED) FG_TRY(fg_film_find_uncertainty(ctx, r, workspace));
   }
   if (r->at.outcome == FG_FILM_UNSOLVED) return FG_OK;

@@ -229,6 +229,18 @@ valid film.schema.json short.json
 expect 0 "is unstable at all speeds" "$program" film $fast --speeds 30000:90000:2 --load 5 --clearance 80 --mass 0.5 --table -
 expect 64 "needs --orbit" "$program" film $fast --orbit-out orbit.csv
 
+# A rotor that is stable at every mass: its orbit decays as its least damped eigenvalue does, and shims are held against no mass of it.
+expect 0 "the bearing as designed has none, at any mass" "$program" film --load 20 --speed 20000 --clearance 80 --compliance 0.67 --mesh 2,4 \
+  --speeds 20000:20100:2 --orbit 100 --shims=-20:20 --draws 10 -o stable.json --table -
+checks - stable.json <<'END' || fail "a rotor that is stable at every mass"
+import json, sys
+r = json.load(open(sys.argv[1]))
+least, orbit, d = r["eigenvalues"][0], r["orbit"], r["draws"]
+assert r["bearing"]["stability"] == "stable at every mass" and least["log_decrement"] > 0, r["bearing"]
+assert abs(orbit["growth_per_turn"] / (-least["log_decrement"] * least["whirl_ratio"]) - 1) < 0.03, (orbit["growth_per_turn"], least)
+assert d["more_stable"]["count"] == 0 < d["less_stable"]["count"] <= d["solved"]["count"] and d["mass_over_perfect"]["median"] is None, d
+END
+
 # Sensitivities: the clearance falls by the thickness; the stiffness rises with its cube.
 expect 0 "constant arc length" "$program" film $fast --speeds 30000:90000:2 --sensitivity -o worth.json --table - --html worth.html
 valid film.schema.json worth.json

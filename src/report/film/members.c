@@ -190,6 +190,7 @@ static double find_percent(const fg_subject *s) {
 
 static const char *find_interval(const fg_subject *s, char *buffer) {
   const fg_film_share *share = s->object;
+  if (isnan(share->low)) return NULL;
   snprintf(buffer, FG_MEMBER_TEXT_MAX, "%.1f to %.1f", 100 * share->low, 100 * share->high);
   return buffer;
 }
@@ -271,7 +272,7 @@ static const fg_member draws_rows[] = {
      .words = "of all: the same, or with a higher one"},
     {FG_GROUP("mass_over_perfect", &quantile_members), .options = FG_MEMBER_ON_LINE,
      .words = "quantiles over those solved of the critical mass over the perfect bearing's; null "
-              "where such bearings are stable at every mass"},
+              "where such bearings are stable at every mass, or the perfect one has no such mass"},
 };
 static const fg_members draws_members = FG_MEMBERS(draws_rows);
 

@@ -50,8 +50,11 @@ void fg_film_quantile_words(const fg_film_draws *d, char *text, size_t size) {
                                                        "at 95 %"};
   size_t used = 0;
   text[0] = '\0';
-  if (!d->solved.count) snprintf(text, size, "none is solved");
-  for (size_t k = 0; d->solved.count && k < FG_FILM_QUANTILES && used < size; k++) {
+  bool known = d->solved.count && !isnan(d->quantile[0]);
+  if (!known)
+    snprintf(text, size, "%s",
+             d->solved.count ? "the bearing as designed has none, at any mass" : "none is solved");
+  for (size_t k = 0; known && k < FG_FILM_QUANTILES && used < size; k++) {
     const char *mark = k ? ", " : "";
     int more = isfinite(d->quantile[k]) && d->quantile[k] > 0
                    ? snprintf(text + used, size - used, "%s%s %.3g", mark, where[k], d->quantile[k])
