@@ -64,11 +64,13 @@ static fg_status deal(fg_context *ctx, cross_fit *c) {
   return FG_OK;
 }
 
-/* Computes the residual of a set over all rows. */
+/* Computes the residual of a set over all rows; without effects from known radii, which show a
+ * scale. */
 static fg_status find_residual(fg_context *ctx, const fg_edge_fit *edge_fit,
                                const fg_effect_set *set, double *residual_um) {
   fg_edge_fit all;
   FG_TRY(fg_edge_fit_subset(ctx, edge_fit, NULL, &all));
+  if (!set->count && all.gauge_um > 0) fg_edge_fit_hold_radii(&all, true);
   fg_status status = fg_joint_fit_geometry(ctx, &all, set, residual_um);
   fg_edge_fit_free(&all);
   return status;

@@ -154,6 +154,34 @@ static void hold_free(refit *r, size_t k) {
   gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
 }
 
+/* Variance of the rows, um² per unit of weight, for correlated noise. */
+static double row_variance(const refit *r) {
+  double sum = 0, rows = 0;
+  for (size_t i = 0; i < r->edge_fit->row_count; i++) {
+    if (r->edge_fit->views[r->edge_fit->rows[i].view].held_out) continue;
+    sum += FG_EDGE_FIT_BLOCK * r->white[i] * r->white[i];
+    rows++;
+  }
+  double dof = fmax(rows - (double)(r->parameters + r->unknowns), 1);
+  double integral = fg_edge_fit_integral(r->edge_fit, NULL, r->edge_fit->row_count, r->white);
+  return sum / dof * fmax(r->edge_fit->scatter.swell, integral);
+}
+
+/* Adds the gauges' radii, as data with their errors: a scale follows from them, and none of them
+ * bends what rows show. */
+static void add_gauges(refit *r) {
+  const fg_edge_fit *edge_fit = r->edge_fit;
+  double weight = row_variance(r) / (edge_fit->gauge_um * edge_fit->gauge_um) * 1e6; /* per mm² */
+  for (size_t p = 0, at = 0; p < edge_fit->part_count; p++) {
+    const fg_edge_fit_part *part = &edge_fit->parts[p];
+    if (part->known_radius_mm > 0 && !part->radius_known) {
+      *gsl_matrix_ptr(r->normal, at, at) += weight;
+      *gsl_vector_ptr(r->right, at) += weight * (part->overall_radius_mm - part->known_radius_mm);
+    }
+    at += 1 + 3 * part->bump_count;
+  }
+}
+
 /* Adds a row to the lower half of the normal equations; it depends on few numbers of the geometry,
  * and on all effects. */
 static void add_row(refit *r, size_t i) {
@@ -189,6 +217,7 @@ static void assemble(refit *r) {
   mirror(r->normal);
   for (size_t k = 0; k < r->unknowns; k++)
     hold_free(r, k);
+  if (r->edge_fit->gauge_um > 0) add_gauges(r);
   for (size_t a = 0; a < n; a++) {
     double d = gsl_matrix_get(r->normal, a, a);
     gsl_matrix_set(r->normal, a, a, d * (1 + DAMP_SHARE) + DAMP);
@@ -242,19 +271,6 @@ static double place_u(const fg_edge_fit *edge_fit, const fg_effect_found *step) 
       below = fmin(below, at);
   }
   return isfinite(below - above) ? (below - above) / sqrt(12) : 0;
-}
-
-/* Variance of the rows, um² per unit of weight, for correlated noise. */
-static double row_variance(const refit *r) {
-  double sum = 0, rows = 0;
-  for (size_t i = 0; i < r->edge_fit->row_count; i++) {
-    if (r->edge_fit->views[r->edge_fit->rows[i].view].held_out) continue;
-    sum += FG_EDGE_FIT_BLOCK * r->white[i] * r->white[i];
-    rows++;
-  }
-  double dof = fmax(rows - (double)(r->parameters + r->unknowns), 1);
-  double integral = fg_edge_fit_integral(r->edge_fit, NULL, r->edge_fit->row_count, r->white);
-  return sum / dof * fmax(r->edge_fit->scatter.swell, integral);
 }
 
 /* Sensitivity of the least-squares geometry to the effects' coefficients. */

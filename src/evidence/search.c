@@ -133,6 +133,14 @@ static size_t rivals_max(const fg_evidence_search *s) {
   return s->problem.edge_fit->discs ? DISC_RIVALS_MAX : RIVALS_MAX;
 }
 
+/* Counts the named effects of a model, but for a scale: known radii show it beside any of them. */
+static size_t count_named(const fg_evidence_model *model) {
+  size_t count = model->named;
+  for (size_t k = 0; k < model->parts; k++)
+    count -= model->part[k]->effect && model->part[k]->effect->scales;
+  return count;
+}
+
 /* Ripples and steps may come several times, all others once, in one of their bases. */
 static bool may_join(const fg_evidence_search *s, const fg_evidence_model *model,
                      const fg_evidence_option *option) {
@@ -140,7 +148,9 @@ static bool may_join(const fg_evidence_search *s, const fg_evidence_model *model
   if (!fg_effect_bears_name(option->effect) && model->parts - model->named == rivals_max(s))
     return false;
   if (option->rival) return !holds_rival(model, option);
-  if (fg_effect_bears_name(option->effect) && model->named == NAMED_MAX) return false;
+  if (fg_effect_bears_name(option->effect) && !option->effect->scales &&
+      count_named(model) == NAMED_MAX)
+    return false;
   if (option->effect->sought == FG_EFFECT_PLACED)
     return copies_of(model, option->effect) < COPIES_MAX;
   return !fg_evidence_holds(model, option->effect);
@@ -322,8 +332,8 @@ static size_t choose_front(const fg_evidence_search *s, size_t parts, size_t *fr
 }
 
 static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
-  size_t front[NAMED_FRONT + RIVAL_FRONT];
-  for (size_t parts = 0; parts < ROUNDS; parts++) {
+  size_t front[NAMED_FRONT + RIVAL_FRONT], rounds = ROUNDS + (s->scatter.gauges > 0);
+  for (size_t parts = 0; parts < rounds; parts++) {
     double before = s->models[0].score;
     for (size_t m = 0; m < s->count; m++)
       before = fmax(before, s->models[m].score);

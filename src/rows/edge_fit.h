@@ -110,7 +110,9 @@ typedef struct fg_edge_fit {
   const char *left_out; /* ids of effects that no search looks for, with commas; NULL: none */
   bool discs;           /* parts are discs: one circle each */
   size_t known_count;   /* number of parts of known radius */
-  fg_scatter scatter;   /* as found last */
+  double gauge_um;    /* standard deviation of known radii that are not held: the joint fit's prior;
+                         0: none */
+  fg_scatter scatter; /* as found last */
 } fg_edge_fit;
 
 /* Builds rows and a start of the geometry from measured foils. Views of one part must have the same

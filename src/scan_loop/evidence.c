@@ -162,9 +162,10 @@ static bool holds_scale(const fg_effect_set *set) {
   return false;
 }
 
-/* Gauges, and the level of the edges, err: known radii decide on a scale alone. */
+/* Radii are fitted; for a scale, the gauges' are data beside them. */
 static fg_status fit_set(fg_context *ctx, fg_scan_loop *loop, fg_effect_set *set) {
-  fg_edge_fit_hold_radii(&loop->edge_fit, holds_scale(set));
+  fg_edge_fit_hold_radii(&loop->edge_fit, false);
+  loop->edge_fit.gauge_um = holds_scale(set) ? loop->gauge_um : 0;
   return fg_joint_fit(ctx, &loop->edge_fit, set, loop->residual_after);
 }
 
@@ -313,6 +314,7 @@ static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double
   FG_TRY(open_search(ctx, loop, residual, jacobian, seeds, search));
   FG_TRY(fg_evidence_search_run(ctx, search));
   FG_TRY(fg_evidence_find_misfit(ctx, search, &misfit_um));
+  loop->gauge_um = search->models[0].scatter_um[FG_EVIDENCE_GAUGE];
   loop->misfit = misfit_um > MISFIT_MIN * search->problem.noise_um;
   if (!loop->misfit) return FG_OK;
   fg_evidence_rescale(&search->problem, misfit_um);
@@ -434,6 +436,7 @@ static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
   fg_effect_set none = {.count = 0};
   if (holds_scale(&loop->set)) {
     fg_edge_fit_hold_radii(&loop->edge_fit, true);
+    loop->edge_fit.gauge_um = 0;
     FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &none, loop->residual_before));
   }
   return fit_set(ctx, loop, &loop->set);

@@ -128,6 +128,18 @@ python3 -c "import sys; sys.exit(not float(sys.argv[1]) < 2e-6)" \
   "$(value off.out "next(c for c in r['claims'] if c['id'] == 'scan.shear')['uncertainty']['value']")" || fail "gauges that are off make a shear uncertain"
 near "radius beside gauges that are off" "$(error_of off.out after)" 0 0.15
 
+# The same gauges under a picture that is too small by 0.2 %: a scale beside four other effects, whose numbers it does not make uncertain.
+python3 -c "
+import json
+design = json.load(open('off.json'))
+design['diameters_mm'] = [1.002 * d for d in design['diameters_mm']]
+json.dump(design, open('small.json', 'w'))"
+"$program" loop all.png --design small.json -o small.out || fail "loop on five effects"
+[ "$(value small.out "sorted(c['id'] for c in r['claims'])")" = \
+  "['scan.carriage_ripple', 'scan.row_step', 'scan.scale', 'scan.scale_y', 'scan.shear']" ] || fail "a scale beside four effects is $(value small.out "[c['id'] for c in r['claims']]")"
+near "a scale beside four effects" "$(value small.out "next(c for c in r['claims'] if c['id'] == 'scan.scale')['parameters']['value']")" 0.002 0.0004
+near "a shear beside a scale" "$(value small.out "next(c for c in r['claims'] if c['id'] == 'scan.shear')['parameters']['value']")" 0.0006 0.000004
+
 # A keystone, which is no effect of plates by name: a map of the picture, and no quadratic of the carriage.
 plate keystone 8 '{"id":"scan.keystone","amplitude_um":12}'
 "$program" loop keystone.png --form discs -o keystone.out || fail "loop on a plate with a keystone"
