@@ -66,6 +66,21 @@ void fg_evidence_shift_close(fg_evidence_shift *w) {
   *w = (fg_evidence_shift){.count = 0};
 }
 
+/* Radii of gauges are no flat directions: each follows by its own column, which no other disc has.
+ */
+static void follow_gauges(fg_evidence_search *s, size_t column, double *to) {
+  const fg_edge_fit *edge_fit = s->problem.edge_fit;
+  size_t gauge = s->scatter.first + s->scatter.count;
+  for (size_t part = 0; s->scatter.gauges && part < edge_fit->part_count; part++) {
+    double along, square;
+    if (!(edge_fit->parts[part].known_radius_mm > 0)) continue;
+    fg_evidence_products(&s->problem, column, gauge, 1, &along);
+    fg_evidence_products(&s->problem, gauge, gauge, 1, &square);
+    to[part] -= square > 0 ? along / square : 0; /* a disc's only number */
+    gauge++;
+  }
+}
+
 /* Least squares of the geometry to one column, without any prior. `sizes`: room for the scatter. */
 static void follow_column(fg_evidence_search *s, const fg_evidence_shift *w, size_t column,
                           double *sizes, double *to) {
@@ -89,6 +104,7 @@ static void follow_column(fg_evidence_search *s, const fg_evidence_shift *w, siz
     }
     to[i] = sum;
   }
+  follow_gauges(s, column, to);
   size_t bump = 0;
   for (size_t part = 0; part < p->edge_fit->part_count; part++) {
     for (size_t b = 0; b < p->edge_fit->parts[part].bump_count && 3 * bump < n; b++, bump++) {

@@ -75,11 +75,11 @@ static void add_foil_noise(const fg_edge_fit_part *part, const fg_joint_fit_part
   benefit->noises++;
 }
 
-/* A gauge's radius is given: the fit does not determine it. */
+/* A gauge's radius is given to a search without evidence: its fit does not determine it. */
 static void add_disc_noise(const fg_edge_fit_part *part, const fg_joint_fit_part *adds, size_t disc,
                            double scale, fg_benefit *benefit) {
   double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
-  if (!(part->known_radius_mm > 0)) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
+  if (!part->radius_known) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
   add_scaled(benefit, disc, noise, scale);
 }
 
