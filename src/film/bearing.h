@@ -136,7 +136,8 @@ fg_status fg_film_find_tolerance(fg_context *ctx, fg_film_report *report,
 fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *report,
                             fg_film_workspace *workspace, const fg_film_bearing *bearing,
                             fg_film_side *side);
-/* Threshold speed of a bearing among the options' speeds; NaN: none. */
+/* Threshold speed of a bearing among the options' speeds; NaN: none. The workspace's film is that
+ * below it. */
 fg_status fg_film_find_threshold_speed(fg_context *ctx, const fg_film_report *report,
                                        fg_film_workspace *workspace, const fg_film_bearing *bearing,
                                        double *rpm);

@@ -131,6 +131,7 @@ fg_status fg_film_mark_open(fg_context *ctx, const fg_film_workspace *b, fg_film
 void fg_film_mark_return(const fg_film_mark *mark, fg_film_workspace *b) {
   fg_film_state_copy(&b->film, &mark->state, &b->state);
   fg_film_case_copy(&mark->before, b->film.columns, &b->before);
+  fg_film_case_copy(&mark->before, b->film.columns, &b->at);
 }
 
 void fg_film_mark_close(fg_film_mark *mark) {

@@ -98,6 +98,7 @@ static fg_status refine_threshold(fg_context *ctx, const speed_map *map,
     side = end;
   }
   *rpm = exp(root);
+  fg_film_mark_return(&map->film[below], workspace);
   return FG_OK;
 }
 

@@ -18,14 +18,19 @@ static const double share_kept = 0.95;
 /* Of the interval's ends the upper one tells ABOVE, and the lower one nearly always the rest. */
 static const int side_order[] = {0, SIDE_STEPS, 1, 2, 3};
 
-fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
-                            const fg_film_bearing *bearing, fg_film_side *side) {
-  *side = FG_FILM_NO_FILM;
+/* Each speed is gone to from the film that the bearing has: from one speed to another it might be
+ * on another film. */
+static fg_status find_side_from(fg_context *ctx, const fg_film_report *r,
+                                fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                                const fg_film_mark *own, fg_film_side *side) {
   for (int i = 0; i <= SIDE_STEPS; i++) {
     fg_film_result at;
     double share = r->options.within_pct / 100 * (1 - 2. * side_order[i] / SIDE_STEPS);
     double rpm = r->tolerance.threshold_rpm * (1 + share);
+    fg_film_mark_return(own, workspace);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, rpm, FG_FILM_ONWARD, &at));
+    if (at.outcome == FG_FILM_UNSOLVED) /* beyond its end */
+      FG_TRY(fg_film_seek_film(ctx, r, workspace, bearing, rpm, &at));
     if (at.outcome != FG_FILM_SOLVED) return FG_OK;
     if (!fg_film_is_stable(&at, r->options.rotor_mass_kg)) continue;
     *side = i ? FG_FILM_WITHIN : FG_FILM_ABOVE;
@@ -33,6 +38,17 @@ fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_wo
   }
   *side = FG_FILM_BELOW;
   return FG_OK;
+}
+
+fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
+                            const fg_film_bearing *bearing, fg_film_side *side) {
+  fg_film_mark own;
+  *side = FG_FILM_NO_FILM;
+  FG_TRY(fg_film_mark_open(ctx, workspace, &own));
+  fg_status status = find_side_from(ctx, r, workspace, bearing, &own, side);
+  fg_film_mark_return(&own, workspace);
+  fg_film_mark_close(&own);
+  return status;
 }
 
 /* Trials of every bump by itself, which two tolerances ask for. */
@@ -120,15 +136,13 @@ static fg_status find_tolerances(fg_context *ctx, fg_film_report *r, const fg_fi
   return FG_OK;
 }
 
-/* The threshold speed as designed, and tolerances on from the same film. */
+/* The threshold speed as designed, and tolerances on from the film below it. */
 static fg_status find_threshold_and_tolerances(fg_context *ctx, fg_film_report *r,
                                                const fg_film_bearing *perfect,
                                                fg_film_workspace *workspace,
                                                const fg_film_mark *solved) {
   FG_TRY(fg_film_find_threshold_speed(ctx, r, workspace, perfect, &r->tolerance.threshold_rpm));
-  fg_film_mark_return(solved, workspace);
-  if (isnan(r->tolerance.threshold_rpm)) return FG_OK;
-  FG_TRY(find_tolerances(ctx, r, perfect, workspace));
+  if (isfinite(r->tolerance.threshold_rpm)) FG_TRY(find_tolerances(ctx, r, perfect, workspace));
   fg_film_mark_return(solved, workspace);
   return FG_OK;
 }

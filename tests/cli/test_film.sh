@@ -93,7 +93,9 @@ done
 expect 0 "This film ends at .* N as the load rises, and at .* rpm" "$program" film --load 5 --speed 60000 $few --table -
 expect 0 "Another film is there at this load and speed" "$program" film --load 5 --speed 5000 $few --html two.html --table -
 # A map of speeds goes through the bearing's own film, and its threshold is the end of that.
-expect 0 "" "$program" film --load 5 --speed 5000 --mesh 2,4 --speeds 2500:10000:5 -o through.json
+expect 0 "" "$program" film --load 5 --speed 5000 --mesh 2,4 --speeds 2500:10000:5 --within 10 -o through.json --html through.html
+[ "$(sed '1,/Critical mass over speed/d; /<\/svg>/q' through.html | grep -c '<path class="s1" d="M[0-9.]* [0-9.]*L')" = 1 ] \
+  || fail "the curve of the critical mass does not break off where the film ends"
 grep -q 'the same, another film' two.html || fail "the page lacks the other film"
 valid film.schema.json at_5_5000.json
 checks - <<'END' || fail "two films under one load"
@@ -109,6 +111,9 @@ assert fast["film_ends_n"] < 0.5 * fast["load_capacity_n"] and faster["film_ends
 map_of = json.load(open("through.json"))
 for s in map_of["speeds"]:
     assert s["speed_rpm"] != 5000 or abs(s["eccentricity_ratio"] / map_of["bearing"]["eccentricity_ratio"] - 1) < 1e-6, s
+assert map_of["eigenvalues"] == light["eigenvalues"], "the studies before the eigenvalues change them"
+closer, wider, each = (map_of["tolerance"][k] for k in ("alike_closer_um", "alike_wider_um", "each_um"))
+assert min(closer, wider) > 1 and each > 0.2, (closer, wider, each)
 assert 7000 < map_of["threshold_rpm"] < 9500 and abs(map_of["threshold_eigen_rpm"] / map_of["threshold_rpm"] - 1) < 4e-4, map_of["threshold_rpm"]
 assert fast["lift_off_rpm"] < min(faster["lift_off_rpm"], 0.5 * fast["film_ends_rpm"]), (fast["lift_off_rpm"], faster["lift_off_rpm"])
 END

@@ -116,6 +116,24 @@ void fg_film_plot_thickness(FILE *out, const fg_film_report *r) {
   fg_plot_end(&at);
 }
 
+/* Two neighbouring speeds whose rotors are this far apart, over C, are on two films. */
+static const double far_apart = 0.2;
+
+static bool changes_film(const fg_film_report *r, size_t i) {
+  const double *from = r->speed[i - 1].place_um, *to = r->speed[i].place_um;
+  return hypot(to[0] - from[0], to[1] - from[1]) > far_apart * r->clearance_um;
+}
+
+/* A line for every film that the map passes. */
+static void put_films(fg_plot *at, const fg_film_report *r, const double *x, const double *y) {
+  size_t begin = 0;
+  for (size_t i = 1; i <= r->speeds; i++) {
+    if (i < r->speeds && !changes_film(r, i)) continue;
+    fg_plot_line(at, x + begin, y + begin, i - begin, "s1");
+    begin = i;
+  }
+}
+
 /* Axes of decimal logarithms: the numbers stand for powers of ten. */
 void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
   double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
@@ -135,7 +153,7 @@ void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
                                                          .y_title = "log10 of critical mass in kg",
                                                          .x_title = "speed, 1000 rpm"});
   fg_plot_level(&at, log10(r->options.rotor_mass_kg), "limit");
-  fg_plot_line(&at, speed, mass, r->speeds, "s1");
+  put_films(&at, r, speed, mass);
   for (size_t i = 0; i < r->speeds; i++)
     if (isfinite(mass[i])) fg_plot_dot(&at, speed[i], mass[i], 4, "s1");
   for (size_t i = 0; i < r->speeds; i++)
