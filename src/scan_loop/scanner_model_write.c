@@ -27,10 +27,18 @@ static size_t known_diameters(const fg_scan_loop *loop) {
   return 0;
 }
 
+static const fg_effect *find_common_scale(void) {
+  const fg_effect *effect = fg_effect_first();
+  while (effect && !effect->scales)
+    effect = fg_effect_next(effect);
+  return effect;
+}
+
 /* A scale that known diameters do not show is 0, and as uncertain as they leave it. */
 static void add_uncertain_scale(double u_scale, fg_field_list *fields) {
-  if (!(u_scale > 0) || fields->count == FG_FIELDS_MAX) return;
-  fg_field field = fg_effect_field(fg_effect_find("scan.scale"));
+  const fg_effect *scale = find_common_scale();
+  if (!(u_scale > 0) || !scale || fields->count == FG_FIELDS_MAX) return;
+  fg_field field = fg_effect_field(scale);
   field.u_amplitude_mm[0] = u_scale * FG_FIELD_HALF_MM;
   fields->fields[fields->count++] = field;
 }
