@@ -97,7 +97,7 @@ def draw_table(program, draws, conditions, kept):
         for name, shims in DESIGNS.items():
             with tempfile.NamedTemporaryFile() as drawn:
                 report, seconds = film(program, *BEARING, *PADS, "--load", load, "--speed", speed, "--speeds",
-                                       f"{speed}:{speed * 1.01}:2", f"--shims={shims}", "--draws", draws, "--jobs", 1,
+                                       f"{speed}:{speed * 1.01}:2", f"--shims={shims}", "--draws", draws,
                                        "--draws-out", drawn.name)
                 masses = count_masses(drawn.name)
             kept[name, load, speed] = report
@@ -162,7 +162,7 @@ def orbit_table(program):
 
 
 def main():
-    program, draws = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 200
+    program, draws = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 1000
     kept = {}
     print(WORDS.strip())
     print("\n## The mesh\n\n5 N, 60 000 rpm, without shims:\n")
