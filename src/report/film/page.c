@@ -11,15 +11,31 @@
 #include "report/film/plots.h"
 #include "report/provenance.h"
 
+/* The verdict on the rotor. It is open where another film is there, on which it is unstable. */
+static fg_tile rotor_tile(const fg_film_report *r) {
+  const fg_film_result *at = &r->at;
+  double mass_kg = r->options.rotor_mass_kg;
+  bool known = !isnan(at->critical_mass_kg), stable = fg_film_is_stable(at, mass_kg);
+  bool alike = isinf(at->stable_again_kg) && !(at->critical_mass_kg > 0);
+  bool open = stable && r->has_other_film && !fg_film_is_stable(&r->other_film, mass_kg);
+  return (fg_tile){"Rotor",
+                   .text = !known   ? "–"
+                           : stable ? "stable"
+                                    : "unstable",
+                   .small = open ? "on this film; on the other it whirls"
+                            : isinf(at->critical_mass_kg) || alike
+                                ? "at every mass, at this speed"
+                                : "of the stated mass, at this speed",
+                   .look = !known || open ? FG_TILE_OPEN
+                           : stable       ? FG_TILE_GOOD
+                                          : FG_TILE_BAD};
+}
+
 static void put_film_tiles(FILE *out, const fg_film_report *r) {
   const fg_film_result *at = &r->at;
-  const char *word = fg_film_stability_word(r, at);
   bool always = isinf(at->critical_mass_kg);
   const fg_tile tiles[] = {
-      {"Rotor", .text = word ? word : "–", .small = "of the stated mass, at this speed",
-       .look = !word                                             ? FG_TILE_OPEN
-               : fg_film_is_stable(at, r->options.rotor_mass_kg) ? FG_TILE_GOOD
-                                                                 : FG_TILE_BAD},
+      rotor_tile(r),
       {always ? NULL : "Critical mass", .value = at->critical_mass_kg, .digits = 4, .unit = "kg",
        .small = "on this bearing"},
       {"Threshold speed", .value = r->threshold_rpm, .unit = "rpm",
