@@ -29,6 +29,12 @@ void fg_effect_set_fields(const fg_edge_fit *edge_fit, const fg_effect_set *set,
       fields->fields[fields->count++] = fg_effect_found_field(&set->effects[e]);
 }
 
+bool fg_effect_set_scales(const fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    if (set->effects[e].kind->scales) return true;
+  return false;
+}
+
 fg_status fg_effect_set_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
                               const fg_effect_set *set, double **shift_mm) {
   size_t rows = edge_fit->row_count;

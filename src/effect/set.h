@@ -29,6 +29,9 @@ void fg_effect_set_fields(const fg_edge_fit *edge_fit, const fg_effect_set *set,
 fg_status fg_effect_set_shift(fg_context *ctx, const fg_edge_fit *edge_fit,
                               const fg_effect_set *set, double **shift_mm);
 
+/* Returns true where a set holds a scale of both axes, which known radii alone show. */
+bool fg_effect_set_scales(const fg_effect_set *set);
+
 /* Size, um: of sine and cosine, of the leading coefficient, or of all columns; its standard
  * uncertainty. */
 double fg_effect_found_amplitude(const fg_effect_found *effect);

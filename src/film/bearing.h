@@ -40,6 +40,11 @@ static inline double fg_film_mass_over(const fg_film_report *report, double mass
   return perfect_kg > 0 && isfinite(perfect_kg) ? mass_kg / perfect_kg : NAN;
 }
 
+/* Returns true for a rotor on a whole film, from which it does not fall. */
+static inline bool fg_film_rests(const fg_film_result *result) {
+  return result->outcome == FG_FILM_SOLVED && !fg_film_falls_off(result);
+}
+
 /* Mesh, case and state of one thread. */
 typedef struct fg_film_workspace {
   fg_film film;

@@ -30,7 +30,7 @@ static fg_status take_step(fg_context *ctx, const limit_search *search, film_ste
   if (search->of_load) changed.options.load_n *= factor;
   FG_TRY(step(ctx, &changed, search->workspace, &r->bearing,
               r->options.speed_rpm / (search->of_load ? 1 : factor), &result));
-  *does = result.outcome == FG_FILM_SOLVED && !fg_film_falls_off(&result);
+  *does = fg_film_rests(&result);
   return FG_OK;
 }
 

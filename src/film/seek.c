@@ -5,11 +5,6 @@
 
 #include "film/bearing.h"
 
-/* On a whole film, from which it does not fall. */
-static bool rests(const fg_film_result *result) {
-  return result->outcome == FG_FILM_SOLVED && !fg_film_falls_off(result);
-}
-
 /* Speeds of a faster rotor, whose film is thicker, over that which is sought. */
 static const double faster[] = {1.1, 4};
 
@@ -21,7 +16,7 @@ static fg_status solve_from_faster(fg_context *ctx, const fg_film_report *r, fg_
         fg_film_solve_bearing(ctx, r, b, bearing, faster[i] * speed_rpm, FG_FILM_AFRESH, result));
     if (result->outcome == FG_FILM_UNSOLVED) continue;
     FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_ONWARD, result));
-    if (rests(result)) return FG_OK;
+    if (fg_film_rests(result)) return FG_OK;
   }
   return FG_OK;
 }
@@ -55,7 +50,7 @@ fg_status fg_film_solve_from_places(fg_context *ctx, const fg_film_report *r, fg
                                     fg_film_result *result) {
   for (size_t i = 0; i < HELD_PLACES; i++) {
     FG_TRY(solve_from_place(ctx, r, b, bearing, speed_rpm, i, result));
-    if (rests(result)) return FG_OK;
+    if (fg_film_rests(result)) return FG_OK;
   }
   return FG_OK;
 }
@@ -70,7 +65,7 @@ fg_status fg_film_seek_beside(fg_context *ctx, const fg_film_report *r, fg_film_
   for (size_t i = 0; i < HELD_PLACES && !*found; i++) {
     FG_TRY(solve_from_place(ctx, r, b, bearing, r->options.speed_rpm, i, result));
     const double *other = b->state.place;
-    *found = rests(result) && hypot(other[0] - place[0], other[1] - place[1]) > apart;
+    *found = fg_film_rests(result) && hypot(other[0] - place[0], other[1] - place[1]) > apart;
   }
   return FG_OK;
 }
@@ -82,10 +77,10 @@ fg_status fg_film_seek_film(fg_context *ctx, const fg_film_report *r, fg_film_wo
                         const fg_film_bearing *, double, fg_film_result *);
   static way *const others[] = {solve_from_faster, fg_film_solve_from_places};
   FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_AFRESH, result));
-  for (size_t i = 0; i < sizeof others / sizeof *others && !rests(result); i++) {
+  for (size_t i = 0; i < sizeof others / sizeof *others && !fg_film_rests(result); i++) {
     fg_film_result other;
     FG_TRY(others[i](ctx, r, b, bearing, speed_rpm, &other));
-    if (other.speed_rpm == speed_rpm && (other.outcome < result->outcome || rests(&other)))
+    if (other.speed_rpm == speed_rpm && (other.outcome < result->outcome || fg_film_rests(&other)))
       *result = other;
     else /* back to the first */
       FG_TRY(fg_film_solve_bearing(ctx, r, b, bearing, speed_rpm, FG_FILM_AFRESH, result));

@@ -40,10 +40,6 @@ typedef struct speed_map {
   size_t speeds;
 } speed_map;
 
-static bool rests(const fg_film_result *at) {
-  return at->outcome == FG_FILM_SOLVED && !fg_film_falls_off(at);
-}
-
 /* A speed of the map: on from the workspace's film, or by every path where none is whole on it. */
 static fg_status solve_speed(fg_context *ctx, const speed_map *map, fg_film_workspace *workspace,
                              double speed_rpm, bool onward, fg_film_result *at) {
@@ -52,12 +48,12 @@ static fg_status solve_speed(fg_context *ctx, const speed_map *map, fg_film_work
   at->outcome = FG_FILM_UNSOLVED;
   if (onward)
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, map->bearing, speed_rpm, FG_FILM_ONWARD, at));
-  if (!rests(at)) {
+  if (!fg_film_rests(at)) {
     fg_film_mark first;
     fg_film_result found;
     FG_TRY(fg_film_mark_open(ctx, workspace, &first));
     fg_status status = fg_film_seek_film(ctx, r, workspace, map->bearing, speed_rpm, &found);
-    if (rests(&found) || at->outcome == FG_FILM_UNSOLVED)
+    if (fg_film_rests(&found) || at->outcome == FG_FILM_UNSOLVED)
       *at = found;
     else
       fg_film_mark_return(&first, workspace);

@@ -156,16 +156,10 @@ static void leave_out_nothings(const fg_effect_set *set, fg_explanations *explan
         explanations->each[0].mask &= ~(1u << c);
 }
 
-static bool holds_scale(const fg_effect_set *set) {
-  for (size_t e = 0; e < set->count; e++)
-    if (set->effects[e].kind->scales) return true;
-  return false;
-}
-
 /* Radii are fitted; for a scale, the gauges' are data beside them. */
 static fg_status fit_set(fg_context *ctx, fg_scan_loop *loop, fg_effect_set *set) {
   fg_edge_fit_hold_radii(&loop->edge_fit, false);
-  loop->edge_fit.gauge_um = holds_scale(set) ? loop->gauge_um : 0;
+  loop->edge_fit.gauge_um = fg_effect_set_scales(set) ? loop->gauge_um : 0;
   return fg_joint_fit(ctx, &loop->edge_fit, set, loop->residual_after);
 }
 
@@ -191,7 +185,7 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
   fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
   fg_status status = fit_set(ctx, loop, set);
-  bool comparable = !holds_scale(set); /* beside known radii more is left */
+  bool comparable = !fg_effect_set_scales(set); /* beside known radii more is left */
   if (status == FG_OK && comparable && !has_converged(loop)) status = FG_ERR_NUMERIC;
   if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
@@ -434,7 +428,7 @@ exit:
  * ones, which alone show it. */
 static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
   fg_effect_set none = {.count = 0};
-  if (holds_scale(&loop->set)) {
+  if (fg_effect_set_scales(&loop->set)) {
     fg_edge_fit_hold_radii(&loop->edge_fit, true);
     loop->edge_fit.gauge_um = 0;
     FG_TRY(fg_joint_fit(ctx, &loop->edge_fit, &none, loop->residual_before));

@@ -20,20 +20,14 @@ typedef struct deviations {
   double scatter;       /* beside a level and a scale, over u; at least 1 */
 } deviations;
 
-static bool holds_scale(const fg_effect_set *set) {
-  for (size_t e = 0; e < set->count; e++)
-    if (set->effects[e].kind->scales) return true;
-  return false;
-}
-
 static double radius_of(const fg_scan_loop *loop, const fg_edge_fit_view *view) {
   return loop->after[view->scan].discs[view->disc - view->measurement->discs].radius_mm;
 }
 
 static deviations compare_with_known(const fg_scan_loop *loop) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
-  double stated_mm = loop->before[0].design.discs.u_diameters_mm, sum = 0, x[2] = {0, 0};
-  deviations found = {.u_um = 500 * (stated_mm > 0 ? stated_mm : FG_U_DIAMETER_MM), .scatter = 1};
+  double sum = 0, x[2] = {0, 0};
+  deviations found = {.u_um = 500 * fg_scan_loop_u_diameter_mm(&loop->before[0]), .scatter = 1};
   fg_normal_equations system;
   fg_normal_clear(&system, 2);
   for (size_t v = 0; v < edge_fit->view_count; v++) {
@@ -63,7 +57,8 @@ static void put_smallest(double scale, fg_explanations *explanations) {
 }
 
 fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
-  if (!loop->by_evidence || !loop->edge_fit.known_count || holds_scale(&loop->set)) return FG_OK;
+  if (!loop->by_evidence || !loop->edge_fit.known_count || fg_effect_set_scales(&loop->set))
+    return FG_OK;
   const deviations of = compare_with_known(loop);
   double u_scale = of.scatter * loop->tone.u_scale, smallest = FOUND_ERRORS * u_scale;
   if (u_scale < UNKNOWN_SCALE) loop->u_scale = u_scale;

@@ -17,9 +17,7 @@
 /* Returns the number of known diameters that determined the absolute scale; 0 where they could not
  * have detected an error of it. */
 static size_t known_diameters(const fg_scan_loop *loop) {
-  for (size_t e = 0; e < loop->set.count; e++)
-    if (loop->set.effects[e].kind->scales) return loop->edge_fit.known_count;
-  if (loop->u_scale > 0) return loop->edge_fit.known_count;
+  if (fg_effect_set_scales(&loop->set) || loop->u_scale > 0) return loop->edge_fit.known_count;
   for (size_t i = 0; i < loop->result.unclaimeds; i++)
     if (fg_effect_find(loop->result.unclaimed[i].id)->scales &&
         loop->result.unclaimed[i].verdict == FG_LOOP_ABSENT)

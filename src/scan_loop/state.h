@@ -112,6 +112,10 @@ fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
 /* Standard uncertainty of a known diameter if the design does not state it: a pin gauge within 1
  * um. */
 #define FG_U_DIAMETER_MM 0.0005
+static inline double fg_scan_loop_u_diameter_mm(const fg_measurement *measurement) {
+  double stated_mm = measurement->design.discs.u_diameters_mm;
+  return stated_mm > 0 ? stated_mm : FG_U_DIAMETER_MM;
+}
 
 /* Tells what known diameters leave open where no scale was found, and from which size on one would
  * have shown. Needs the tone. */

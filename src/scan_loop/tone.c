@@ -41,9 +41,8 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
     const fg_disc *disc = view->disc;
     if (view->held_out || !(part->known_radius_mm > 0) || disc->flags & FG_BUMP_POOR_FIT) continue;
     const fg_disc *corrected = &scans[view->scan].discs[disc - view->measurement->discs];
-    double stated = view->measurement->design.discs.u_diameters_mm;
-    add_disc(disc, corrected, 2 * part->known_radius_mm, stated > 0 ? stated : FG_U_DIAMETER_MM,
-             &sum);
+    add_disc(disc, corrected, 2 * part->known_radius_mm,
+             fg_scan_loop_u_diameter_mm(view->measurement), &sum);
     blur += disc->spread_px;
     asymmetry += disc->asymmetry;
     shown += fg_model_tone_shown_by(disc);

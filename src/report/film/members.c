@@ -23,9 +23,8 @@ static const char *const stability_words[] = {[STABLE] = "stable",
 
 static int find_stability(const fg_film_report *report, const fg_film_result *result) {
   if (isnan(result->critical_mass_kg)) return -1;
-  if (isinf(result->critical_mass_kg)) return STABLE_AT_EVERY_MASS;
-  if (!(result->critical_mass_kg > 0) && isinf(result->stable_again_kg))
-    return UNSTABLE_AT_EVERY_MASS;
+  if (fg_film_is_alike(result))
+    return isinf(result->critical_mass_kg) ? STABLE_AT_EVERY_MASS : UNSTABLE_AT_EVERY_MASS;
   return fg_film_is_stable(result, report->options.rotor_mass_kg) ? STABLE : UNSTABLE;
 }
 

@@ -3,6 +3,8 @@
 #ifndef FG_REPORT_FILM_MEMBERS_H
 #define FG_REPORT_FILM_MEMBERS_H
 
+#include <math.h>
+
 #include "core/member.h"
 #include "foilgauge/film.h"
 
@@ -48,7 +50,14 @@ static inline bool fg_film_whirls_from_lift_off(const fg_film_report *report) {
   return report->threshold_rpm <= report->lift_off_rpm; /* false for NaN */
 }
 
-/* "stable", "unstable", "stable at every mass" or "unstable at every mass" for the rotor of the report; NULL: not known. */
+/* Returns true for a film on which rotors of all masses are stable, or none of them. */
+static inline bool fg_film_is_alike(const fg_film_result *result) {
+  bool at_none = result->critical_mass_kg <= 0 && isinf(result->stable_again_kg);
+  return at_none || isinf(result->critical_mass_kg);
+}
+
+/* "stable", "unstable", "stable at every mass" or "unstable at every mass" for the rotor of the
+ * report; NULL: not known. */
 const char *fg_film_stability_word(const fg_film_report *report, const fg_film_result *result);
 
 enum { FG_FILM_NOTES = 9, FG_FILM_NOTE = 400 };

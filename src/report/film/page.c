@@ -16,16 +16,14 @@ static fg_tile rotor_tile(const fg_film_report *r) {
   const fg_film_result *at = &r->at;
   double mass_kg = r->options.rotor_mass_kg;
   bool known = !isnan(at->critical_mass_kg), stable = fg_film_is_stable(at, mass_kg);
-  bool alike = isinf(at->stable_again_kg) && !(at->critical_mass_kg > 0);
   bool open = stable && r->has_other_film && !fg_film_is_stable(&r->other_film, mass_kg);
   return (fg_tile){"Rotor",
                    .text = !known   ? "–"
                            : stable ? "stable"
                                     : "unstable",
-                   .small = open ? "on this film; on the other it whirls"
-                            : isinf(at->critical_mass_kg) || alike
-                                ? "at every mass, at this speed"
-                                : "of the stated mass, at this speed",
+                   .small = open                   ? "on this film; on the other it whirls"
+                            : fg_film_is_alike(at) ? "at every mass, at this speed"
+                                                   : "of the stated mass, at this speed",
                    .look = !known || open ? FG_TILE_OPEN
                            : stable       ? FG_TILE_GOOD
                                           : FG_TILE_BAD};
