@@ -36,6 +36,8 @@ def connect(address, first, narrow=False):
 def address(k):
     return "127.0.0.%d" % (2 + k)
 longest, asked = {}, {}
+# Who is locked out waits for the 15 s after which the others are cut off; beside other tests a page may take its second.
+MOST = 1 if long else 5
 def ask(what, path=""):
     began = time.monotonic()
     with urllib.request.urlopen(base + path, timeout=20) as answer:
@@ -43,7 +45,7 @@ def ask(what, path=""):
     took = time.monotonic() - began
     longest[what] = max(longest.get(what, 0), took)
     asked[what] = asked.get(what, 0) + 1
-    assert took < 1, "%s: a page took %.2f s" % (what, took)
+    assert took < MOST, "%s: a page took %.2f s" % (what, took)
 def is_closed(one):
     try:
         one.settimeout(0)
