@@ -2,6 +2,7 @@
 #include "evidence/unnamed.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "effect/midline.h"
 
@@ -260,8 +261,15 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
     {.id = NULL},
 };
 
+/* Returns true for a line that is broken across its way: y over x, or x over y. */
+static bool is_broken_across(const fg_effect *effect) {
+  bool over_x = effect->coordinate == FG_EFFECT_X, moves_y = !strcmp(effect->moves, "y");
+  return effect->columns == BROKEN_NUMBERS && !effect->grid && over_x == moves_y;
+}
+
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
-  return !edge_fit->discs || !(effect->jumps || effect->columns == BAND_NUMBERS);
+  if (!edge_fit->discs) return true;
+  return effect->jumps ? is_broken_across(effect) : effect->columns != BAND_NUMBERS;
 }
 
 bool fg_effect_bears_name(const fg_effect *effect) {

@@ -16,7 +16,8 @@
 enum { FG_UNNAMED_EFFECTS = 17 };
 extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
 
-/* Returns false for broken lines on discs, which show a slope and a jump apart: both have names. */
+/* Returns false on discs for lines that are broken along their own way: there a slope and a jump
+ * are seen apart, and both have names. Tilted chips break them across it, which no name has. */
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit);
 
 /* False for one of those that nobody has named, and for NULL: a rival has no effect. */

@@ -21,6 +21,9 @@
  * is expected (FG_EVIDENCE_PRIOR), so each further one is a chance of 3 %, while the shape of an
  * unnamed cause takes as many pieces as it needs. */
 enum { PIECES = 3 };
+/* Share of the whole evidence from which a jump is certain beside what has no name: that follows
+ * nothing so well that a small one is not a part of it. */
+#define CERTAIN_SHARE 0.1
 /* Share of the lowest polynomial in a crown or skew. */
 #define LOWEST_SHARE 0.6
 
@@ -343,11 +346,12 @@ static bool holds_rival_over(const fg_evidence_model *model, int axis) {
  * bumps end in jumps of their own, it is not. */
 static void find_certain(const fg_evidence_search *s, double margin, fg_evidence_verdict *v) {
   const fg_evidence_model *model = &v->tie[0];
+  double gain_min = fmax(margin, CERTAIN_SHARE * model->score);
   for (size_t k = 0; s->problem.edge_fit->discs && v->ties == 1 && k < model->parts; k++) {
     const fg_effect *effect = model->part[k]->effect;
     v->certain[k] = fg_effect_bears_name(effect) && effect->jumps &&
                     !holds_rival_over(model, effect->axis) &&
-                    find_best_without(s, effect) < model->score - margin;
+                    find_best_without(s, effect) < model->score - gain_min;
   }
 }
 
