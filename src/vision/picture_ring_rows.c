@@ -62,16 +62,18 @@ static int compare_y(const void *a, const void *b) {
   return (p > q) - (p < q);
 }
 
-static void list_stations(const fg_disc_work *work, const fg_disc_edge *edge, ring_search *s) {
+/* `swapped`: x in the place of y, so that a jump is a seam of the columns. */
+static void list_stations(const fg_disc_work *work, const fg_disc_edge *edge, bool swapped,
+                          ring_search *s) {
+  const fg_circle *circle = &edge->circle;
   for (size_t i = 0; i < edge->count; i++) {
     const fg_disc_station *station = &edge->stations[i];
     double angle = fg_ring_angle(&work->ring, i), rho = (double)station->edge_px;
     if (!(station->weight > 0) || !isfinite(rho)) continue;
-    s->rows[s->count++] = (ring_row){.y = edge->circle.y + (edge->circle.radius + rho) * sin(angle),
-                                     .cosine = cos(angle),
-                                     .sine = sin(angle),
-                                     .rho = rho,
-                                     .turn = i};
+    ring_row *row = &s->rows[s->count++];
+    *row = (ring_row){.cosine = cos(angle), .sine = sin(angle), .rho = rho, .turn = i};
+    if (swapped) *row = (ring_row){.cosine = row->sine, .sine = row->cosine, .rho = rho, .turn = i};
+    row->y = (swapped ? circle->x : circle->y) + (circle->radius + rho) * row->sine;
   }
 }
 
@@ -306,10 +308,15 @@ static bool drop_weakest(ring_search *s) {
   return true;
 }
 
+/* Variance that the base and the jumps leave. */
+static double find_rest(ring_search *s) {
+  find_gain_min(s);
+  return variance_of(s);
+}
+
 /* Returns true when jumps, and not deviations of the part from roundness, explain the edge. */
 static bool is_explained(ring_search *s) {
-  find_gain_min(s);
-  double own = variance_of(s);
+  double own = find_rest(s);
   add_harmonics(s, RIVAL);
   return own < RIVAL_SHARE * variance_of(s);
 }
@@ -329,29 +336,49 @@ static void count_jumps(const ring_search *s, double px_per_row, fg_picture_stat
   state->findings |= FG_PICTURE_ROW_JUMPS;
 }
 
-/* Searches by row. Around the turn a station's neighbours are its own limb's; by y they are the
- * other limb's. */
-static void search_rows(ring_search *s, double px_per_row, fg_picture_state *state) {
+/* Around the turn a station's neighbours are its own limb's; by y they are the other limb's. */
+static fg_status search_jumps(fg_context *ctx, const fg_disc_work *work, const fg_disc_edge *edge,
+                              bool swapped, ring_search *s) {
+  *s = (ring_search){.count = 0};
+  FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *s->rows, (void **)&s->rows));
+  FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *s->scratch, (void **)&s->scratch));
+  list_stations(work, edge, swapped, s);
+  if (s->count < STATIONS_MIN || 4 * s->count <= 3 * edge->count) return FG_OK;
   s->noise = find_noise(s);
   fg_sort_items(s->rows, s->count, sizeof *s->rows, compare_y);
   find_jumps(s);
   find_again(s);
   while (s->jump_count && drop_weakest(s))
     find_again(s);
-  if (s->jump_count && is_explained(s)) count_jumps(s, px_per_row, state);
+  return FG_OK;
+}
+
+static void close_search(ring_search *s) {
+  free(s->rows);
+  free(s->scratch);
+}
+
+/* Returns true where jumps from column to column, as of a sensor's chips, explain the edge better
+ * than those from row to row. */
+static fg_status find_seams(fg_context *ctx, const fg_disc_work *work, const fg_disc_edge *edge,
+                            double rest, bool *seams) {
+  ring_search s;
+  fg_status status = search_jumps(ctx, work, edge, true, &s);
+  *seams = status == FG_OK && s.jump_count && find_rest(&s) < rest;
+  close_search(&s);
+  return status;
 }
 
 fg_status fg_picture_inspect_ring_rows(fg_context *ctx, const fg_disc_work *work,
                                        const fg_disc_edge *edge, fg_picture_state *state) {
-  ring_search s = {.count = 0};
+  ring_search s;
+  bool seams = false;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *s.rows, (void **)&s.rows));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *s.scratch, (void **)&s.scratch));
-  list_stations(work, edge, &s);
-  if (s.count >= STATIONS_MIN && 4 * s.count > 3 * edge->count)
-    search_rows(&s, work->shape->scale[1], state);
+  FG_TRY_EXIT(search_jumps(ctx, work, edge, false, &s));
+  if (!s.jump_count || !is_explained(&s)) goto exit;
+  FG_TRY_EXIT(find_seams(ctx, work, edge, find_rest(&s), &seams));
+  if (!seams) count_jumps(&s, work->shape->scale[1], state);
 exit:
-  free(s.rows);
-  free(s.scratch);
+  close_search(&s);
   return status;
 }

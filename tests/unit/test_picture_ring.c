@@ -35,13 +35,14 @@ static fg_measurement measure_discs(const char *json) {
 
 /* Of one disc of 3 mm, 283 px, whose centre is in row 207.4. `more`: members of it, or what else
  * is drawn. */
-static fg_picture_state state_of(const char *more, const char *scanner) {
+static fg_picture_state state_under(const char *more, const char *scanner, const char *effects) {
   char json[4096];
   bool is_part = !strncmp(more, ",{", 2);
   snprintf(json, sizeof json,
            "{\"schema\":\"foilgauge/render/1\",\"seed\":11,\"width_px\":416,\"height_px\":416,"
-           "\"discs\":[{\"centre_mm\":[2.2,2.2],\"radius_mm\":1.5%s}%s],\"scanner\":{%s}}",
-           is_part ? "" : more, is_part ? more : "", scanner);
+           "\"discs\":[{\"centre_mm\":[2.2,2.2],\"radius_mm\":1.5%s}%s],\"scanner\":{%s},"
+           "\"effects\":[%s]}",
+           is_part ? "" : more, is_part ? more : "", scanner, effects);
   fg_measurement m = measure_discs(json);
   fg_picture_state state = fg_picture_unknown();
   for (size_t i = 0; i < m.disc_count; i++)
@@ -49,6 +50,10 @@ static fg_picture_state state_of(const char *more, const char *scanner) {
   assert_true(state.noise > 0);
   fg_measurement_free(&m);
   return state;
+}
+
+static fg_picture_state state_of(const char *more, const char *scanner) {
+  return state_under(more, scanner, "");
 }
 
 static void assert_none(const char *disc, const char *scanner) {
@@ -122,6 +127,21 @@ static void dented_discs_have_none(void **unused) {
     }
 }
 
+/* Chips of the sensor that are shifted along y, or turned: the edge jumps from column to column. */
+static void seams_of_chips_have_none(void **unused) {
+  (void)unused;
+  static const char *const chips[] = {
+      "{\"id\":\"scan.chip_tilt\",\"amplitude_um\":12,\"x_mm\":1.7,\"pitch_mm\":9}",
+      "{\"id\":\"scan.chip_tilt\",\"amplitude_um\":20,\"x_mm\":2.6,\"pitch_mm\":9}",
+      "{\"id\":\"scan.chip_tilt\",\"amplitude_um\":-16,\"x_mm\":1.2,\"pitch_mm\":9}",
+  };
+  for (size_t i = 0; i < sizeof chips / sizeof *chips; i++) {
+    fg_picture_state state = state_under("", PLAIN, chips[i]);
+    if (state.findings & FG_PICTURE_ROW_JUMPS)
+      fail_msg("%s: %g jumps of %g px", chips[i], state.row_jumps, state.row_jump_px);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rows_lost_and_doubled_are_found),
@@ -129,6 +149,7 @@ int main(void) {
       cmocka_unit_test(plain_and_rough_discs_have_none),
       cmocka_unit_test(lobed_discs_have_none),
       cmocka_unit_test(dented_discs_have_none),
+      cmocka_unit_test(seams_of_chips_have_none),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
