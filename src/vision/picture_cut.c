@@ -15,15 +15,17 @@
 #include "vision/picture_profile.h"
 
 enum { PLACES = 10, CUTS = 20 };
+/* Places of the least light, or of the most, which are left out where that end of the scale cuts
+ * nothing: a wall or a lens stretches it far beyond the blur, which tells nothing of the other end.
+ */
+enum { TAIL_PLACES = 2 };
 /* Min share of the contrast that shows a profile. */
 #define VISIBLE_MIN 0.01
 /* Max misfit beyond the best, root mean square, as a share of the profile's own width: lenses and
  * the tone curve before the cut bend it by as much. */
 #define MISFIT_SHARE 0.02
-/* Width of an uncut edge from share 0.05 to 0.95, in blurs. A picture that shows less than a
- * quarter of an edge's width is one of few levels. */
-#define WHOLE_WIDTH 3.29
-#define BLURS_MAX   4.0
+/* A picture that shows less than a quarter of an edge's width is one of few levels. */
+#define BLURS_MAX 4.0
 /* Ratio of the sd to the largest allowed shift: a uniform distribution up to it would give 1
  * / 1.73. */
 #define SD_OF_LARGEST 0.6
@@ -31,6 +33,7 @@ enum { PLACES = 10, CUTS = 20 };
 typedef struct cut_profile {
   double px[PLACES]; /* places of the shares, outwards */
   bool open[2];      /* background and material may be cut */
+  int first, last;   /* places in use */
 } cut_profile;
 
 /* One pair of cuts: its misfit to the profile, and its place of half the light. */
@@ -86,27 +89,37 @@ static bool make_cut_profile(const fg_edge_profile *profiles, size_t count,
   bool low = state->clipped_low > 0, high = state->clipped_high > 0;
   profile->open[0] = (bright > 0 ? low : high) || !(low || high);
   profile->open[1] = (bright > 0 ? high : low) || !(low || high);
+  profile->first = profile->open[0] ? 0 : TAIL_PLACES;
+  profile->last = PLACES - 1 - (profile->open[1] ? 0 : TAIL_PLACES);
   return true;
+}
+
+/* Returns the width of the places in use, and that of an uncut edge between the same shares. */
+static double width_of(const cut_profile *profile, double *blurs) {
+  *blurs = gsl_cdf_ugaussian_Pinv(share_at(profile->last)) -
+           gsl_cdf_ugaussian_Pinv(share_at(profile->first));
+  return fabs(profile->px[profile->last] - profile->px[profile->first]);
 }
 
 /* Regression of the places on the quantiles of their light. */
 static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
-  double z[PLACES], mean_z = 0, mean_x = 0, zz = 0, zx = 0, misfit = 0;
-  for (int p = 0; p < PLACES; p++) {
+  double z[PLACES], mean_z = 0, mean_x = 0, zz = 0, zx = 0, misfit = 0, blurs;
+  double n = profile->last + 1 - profile->first;
+  for (int p = profile->first; p <= profile->last; p++) {
     z[p] = gsl_cdf_ugaussian_Pinv(a + (1 - a - b) * share_at(p));
-    mean_z += z[p] / PLACES;
-    mean_x += profile->px[p] / PLACES;
+    mean_z += z[p] / n;
+    mean_x += profile->px[p] / n;
   }
-  for (int p = 0; p < PLACES; p++) {
+  for (int p = profile->first; p <= profile->last; p++) {
     zz += (z[p] - mean_z) * (z[p] - mean_z);
     zx += (z[p] - mean_z) * (profile->px[p] - mean_x);
   }
   double slope = zx / zz; /* negative: the light falls outwards */
-  for (int p = 0; p < PLACES; p++) {
+  for (int p = profile->first; p <= profile->last; p++) {
     double miss = profile->px[p] - mean_x - slope * (z[p] - mean_z);
-    misfit += miss * miss / PLACES;
+    misfit += miss * miss / n;
   }
-  double seen = fabs(profile->px[PLACES - 1] - profile->px[0]) / WHOLE_WIDTH;
+  double seen = width_of(profile, &blurs) / blurs;
   double blur = fmax(fmin(fabs(slope), BLURS_MAX * seen), FG_HIDDEN_BLUR_PX);
   return (cut_fit){sqrt(misfit), blur * fabs(gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * (a - b)))};
 }
@@ -135,7 +148,7 @@ void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, doubl
   /* Without a usable profile half of the scale or more may be cut. */
   double shift = FG_HIDDEN_BLUR_PX * gsl_cdf_ugaussian_Pinv(1 - VISIBLE_MIN / 2);
   if (make_cut_profile(profiles, count, state, &profile)) {
-    double width = fabs(profile.px[PLACES - 1] - profile.px[0]);
+    double blurs, width = width_of(&profile, &blurs);
     largest_shift(&profile, 0, &best);
     shift = largest_shift(&profile, best + MISFIT_SHARE * width, &best);
   }

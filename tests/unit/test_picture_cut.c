@@ -22,15 +22,25 @@ static fg_edge_profile cut_edge(double a, double b, int bright) {
   return profile;
 }
 
-/* Standard uncertainty of the edge's place, px. */
-static double u_px(double a, double b, int bright) {
-  fg_edge_profile profile = cut_edge(a, b, bright);
+/* Light of a wall beyond the edge: a quarter of it, that falls slowly. */
+static void add_wall(fg_edge_profile *profile) {
+  for (size_t i = FG_SHARES_INSIDE; i < FG_SHARES; i++)
+    profile->shares[i] = fmaxf(profile->shares[i], (float)(0.25 * exp(-fg_share_px(i) / 5)));
+}
+
+/* Standard uncertainty of the place of a profile's edge, px. */
+static double u_of_profile(const fg_edge_profile *profile, double a, double b, int bright) {
   fg_picture_state state = fg_picture_unknown();
   state.findings = FG_PICTURE_CLIPPED;
   state.clipped_low = bright ? a > 0 : b > 0;
   state.clipped_high = bright ? b > 0 : a > 0;
-  fg_picture_inspect_cut(&profile, 1, 0.7, &state);
+  fg_picture_inspect_cut(profile, 1, 0.7, &state);
   return state.u_cut * 0.7 * sqrt(2 * M_PI);
+}
+
+static double u_px(double a, double b, int bright) {
+  fg_edge_profile profile = cut_edge(a, b, bright);
+  return u_of_profile(&profile, a, b, bright);
 }
 
 static void u_of_a_cut_covers_the_edge_and_grows_with_the_cut(void **unused) {
@@ -53,6 +63,19 @@ static void u_of_a_cut_covers_the_edge_and_grows_with_the_cut(void **unused) {
 static void a_small_cut_adds_little_uncertainty(void **unused) {
   (void)unused;
   assert_true(u_px(0.05, 0, 1) < 0.6);
+}
+
+static void a_wall_beyond_the_edge_is_no_cut_of_the_other_end(void **unused) {
+  (void)unused;
+  for (int bright = 0; bright < 2; bright++)
+    for (int step = 1; step <= 7; step++) {
+      double b = 0.1 * step, off = BLUR_PX * fabs(gsl_cdf_ugaussian_Pinv(0.5 * (1 - b)));
+      fg_edge_profile profile = cut_edge(0, b, bright);
+      add_wall(&profile);
+      double u = u_of_profile(&profile, 0, b, bright);
+      if (!(2 * u >= off) || u > 3 * BLUR_PX)
+        fail_msg("cut %.1f beside a wall: %.3f px off at u %.3f", b, off, u);
+    }
 }
 
 enum { BINS = 81 };
@@ -88,6 +111,7 @@ int main(void) {
       cmocka_unit_test(empty_outer_bins_leave_the_outer_level),
       cmocka_unit_test(u_of_a_cut_covers_the_edge_and_grows_with_the_cut),
       cmocka_unit_test(a_small_cut_adds_little_uncertainty),
+      cmocka_unit_test(a_wall_beyond_the_edge_is_no_cut_of_the_other_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
