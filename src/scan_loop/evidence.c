@@ -185,7 +185,8 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   FG_TRY(fg_memory_allocate(ctx, numbers, sizeof *geometry, (void **)&geometry));
   fg_edge_fit_geometry_save(&loop->edge_fit, geometry);
   fg_status status = fit_set(ctx, loop, set);
-  bool comparable = !fg_effect_set_scales(set); /* beside known radii more is left */
+  /* Beside known radii more is left; no effect at all leaves the same, but for its last digits. */
+  bool comparable = set->count && !fg_effect_set_scales(set);
   if (status == FG_OK && comparable && !has_converged(loop)) status = FG_ERR_NUMERIC;
   if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
