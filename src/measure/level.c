@@ -107,6 +107,11 @@ double fg_level_solve(const fg_level_sum *sum, double u_scale_rel, fg_level *lev
   return chi2 / (count - 1);
 }
 
+bool fg_level_is_contradicted(const fg_level_sum *sum, double ratio) {
+  double dof = (double)sum->count - 1;
+  return dof > 0 && ratio * dof > gsl_cdf_chisq_Qinv(CONTRADICTION_P, dof);
+}
+
 double fg_level_u_scale(const fg_level_sum *sum) {
   double hh = sum->hh + 1 / (LEVEL_UNKNOWN_SD * LEVEL_UNKNOWN_SD);
   return sqrt(hh / (hh * sum->ee - sum->he * sum->he));
@@ -122,8 +127,8 @@ bool fg_level_of_gauges(fg_measurement *m, fg_level *level) {
     if (reading->used) fg_level_add(&sum, &m->design.gauges[i], reading);
   }
   if (!sum.count) return false;
-  double ratio = fg_level_solve(&sum, u_scale(&m->design), level), dof = (double)sum.count - 1;
-  m->gauges_contradict = dof > 0 && ratio * dof > gsl_cdf_chisq_Qinv(CONTRADICTION_P, dof);
+  double ratio = fg_level_solve(&sum, u_scale(&m->design), level);
+  m->gauges_contradict = fg_level_is_contradicted(&sum, ratio);
   return true;
 }
 

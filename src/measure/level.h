@@ -24,6 +24,9 @@ void fg_level_add(fg_level_sum *sum, const fg_gauge *gauge, const fg_gauge_readi
  * the readings scatter by more than their own u. Returns chi² / dof; 0 of one reading. */
 double fg_level_solve(const fg_level_sum *sum, double u_scale, fg_level *level);
 
+/* Returns true where the readings scatter about the level and the scale by more than chance. */
+bool fg_level_is_contradicted(const fg_level_sum *sum, double ratio);
+
 /* Standard uncertainty of a relative scale error estimated together with an unknown level. */
 double fg_level_u_scale(const fg_level_sum *sum);
 

@@ -291,7 +291,8 @@ static fg_status calibrate(fg_context *ctx, fg_scan_loop *loop) {
 static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result);
 
 /* Repeats the loop with the edges moved to the level that the known diameters show: a level common
- * to all discs looks like a scale that falls with their size. */
+ * to all discs looks like a scale that falls with their size. Where an effect moves them, too, it
+ * is that of the corrected ones. */
 static fg_status level_again(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result) {
   fg_scan_loop *next = NULL;
   fg_status status = FG_OK;
@@ -317,7 +318,7 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
       fg_scan_loop_bumps_check_forming(ctx, loop->options.forming, loop->before, loop->scan_count));
   FG_TRY_EXIT(build_points(ctx, loop));
   loop->tone = fg_scan_loop_find_tone(loop, false);
-  if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
+  if (!loop->levelled && !loop->tone.contradicted && fg_model_tone_is_significant(&loop->tone))
     return level_again(ctx, loop, result);
   FG_TRY_EXIT(search_effects(ctx, loop));
   if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))

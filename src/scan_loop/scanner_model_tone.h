@@ -19,6 +19,7 @@ typedef struct fg_model_tone {
   double gamma, sharpen_amount, sharpen_radius_px;
   unsigned findings; /* fg_picture_finding of the scans */
   double u_scale;    /* relative u of a scale found with the level; 0: no known diameters */
+  bool contradicted; /* by discs whose sizes scatter: an effect moves them, too */
 } fg_model_tone;
 
 /* T(1/2) less a half, as the edge model explains the edge of a disc. */

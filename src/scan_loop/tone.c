@@ -59,7 +59,7 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
   }
   if (sum.count) tone.u_scale = fg_level_u_scale(&sum);
   if (sum.count < DISCS_MIN) return tone;
-  fg_level_solve(&sum, SCALE_FREE, &tone.level);
+  tone.contradicted = fg_level_is_contradicted(&sum, fg_level_solve(&sum, SCALE_FREE, &tone.level));
   if (!(tone.level.u < LEVEL_KNOWN)) return tone;
   tone.gauges = sum.count;
   tone.blur_px = blur / (double)sum.count;
