@@ -180,9 +180,10 @@ void fg_benefits_add_step(fg_benefits *benefits, const fg_measurement *corrected
  * their noise, and of the values' own u². */
 typedef struct sums {
   double items, noise, own;
-  bool curve;  /* an explanation is a free curve */
-  bool mean;   /* the one move is the mean over all models */
-  bool misfit; /* which do not follow all of the residual */
+  bool curve;   /* an explanation is a free curve */
+  bool mean;    /* the one move is the mean over all models */
+  bool misfit;  /* which do not follow all of the residual */
+  bool refused; /* by known sizes */
   double product[FG_BENEFIT_EXPLANATIONS_MAX][FG_BENEFIT_EXPLANATIONS_MAX];
   size_t explanations;
 } sums;
@@ -202,6 +203,7 @@ static void sum_up_dimension(const fg_benefit *benefit, int k, sums *s) {
   s->curve = s->curve || benefit->curve;
   s->mean = s->mean || benefit->mean;
   s->misfit = s->misfit || benefit->misfit;
+  s->refused = s->refused || benefit->refused;
   for (size_t i = 0; i < benefit->items; i++) {
     const fg_benefit_item *item = &benefit->item[i];
     if (!is_known(benefit, i, k)) continue;
@@ -295,6 +297,7 @@ static fg_correction_reason decide_move(const sums *s, double *part) {
   double agreed[FG_BENEFIT_EXPLANATIONS_MAX];
   fill_mean(s->explanations, part);
   if (s->items < 1) return FG_CORRECTION_NONE;
+  if (s->refused) return FG_CORRECTION_DOUBTFUL;
   double mean = size_of(s, part), scatter = scatter_about(s, part);
   if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
   if (s->mean) {
@@ -382,7 +385,8 @@ void fg_benefit_moment(const fg_benefit *benefit, size_t item, const fg_benefit_
 }
 
 bool fg_benefit_is_whole(const fg_benefit *benefit, const fg_benefit_decision *decision) {
-  if (benefit->explanations > 1 || benefit->misfit || benefit->lost) return false;
+  if (benefit->explanations > 1 || benefit->misfit || benefit->refused || benefit->lost)
+    return false;
   for (int k = 0; k < FG_CORRECTED; k++)
     if (!decision->choice[k].moved && decision->choice[k].reason != FG_CORRECTION_NONE)
       return false;

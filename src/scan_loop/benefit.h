@@ -49,11 +49,12 @@ typedef struct fg_benefit {
   fg_point centre[FG_BENEFIT_EXPLANATIONS_MAX]; /* moves of O */
   size_t explanations;                          /* measured successfully; the first is in force */
   double noises;                                /* number of sums in `noise` */
-  bool misfit; /* the residual of the explanation in force exceeds noise: the fit's own u is too
-                  small */
-  bool curve;  /* an explanation holds a free curve */
-  bool mean;   /* its one move is the mean over all models by their evidence: nothing is nearer */
-  bool lost;   /* the explanation in force does not show the same bumps: the moves are unknown */
+  bool misfit;  /* the residual of the explanation in force exceeds noise: the fit's own u is too
+                   small */
+  bool curve;   /* an explanation holds a free curve */
+  bool mean;    /* its one move is the mean over all models by their evidence: nothing is nearer */
+  bool refused; /* by known sizes, from which the corrected ones lie farther */
+  bool lost;    /* the explanation in force does not show the same bumps: the moves are unknown */
 } fg_benefit;
 
 /* Benefits of every foil, and of the discs, of one measurement. */

@@ -166,7 +166,9 @@ static fg_status keep_foil(fg_context *ctx, fg_scan_loop *loop, size_t scan, siz
 
 static void keep_discs(fg_scan_loop *loop, size_t scan) {
   fg_benefit_decision decision;
-  const fg_benefit *benefit = &loop->benefits[scan].discs;
+  fg_benefit *own = &loop->benefits[scan].discs;
+  own->refused = fg_scan_loop_gauges_refuse(loop, scan);
+  const fg_benefit *benefit = own;
   fg_benefit_decide(&benefit, 1, &(fg_benefit_decision *){&decision});
   fg_benefit_keep_discs(&loop->before[scan], benefit, &decision, &loop->after[scan]);
   fg_benefit_widen_discs(benefit, &decision, &loop->after[scan]);

@@ -120,6 +120,9 @@ static inline double fg_scan_loop_u_diameter_mm(const fg_measurement *measuremen
 /* Tells what known diameters leave open where no scale was found, and from which size on one would
  * have shown. Needs the tone. */
 fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop);
+/* Returns true where the corrected radii of a scan's discs lie clearly farther from the known ones
+ * than those before, beside a level and a scale. */
+bool fg_scan_loop_gauges_refuse(const fg_scan_loop *loop, size_t scan);
 
 /* Finds the edge level from the scans' discs of known diameter, together with a scale. After a
  * search it uses the discs as scanned or as corrected, whichever agree better. gauges is 0 where

@@ -16,4 +16,16 @@ SPEC
 "$program" loop tilted.png --form discs --without scan.chip_tilt -o tilted.out || fail "loop on a plate over tilted chips"
 [ "$(value tilted.out "[c['id'] for c in r['claims'] if c['verdict'] == 'found'], r['unattributed']['moves']")" = "([], 'y')" ] ||
   fail "tilted chips are $(value tilted.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
+
+# The same under pins of known diameters: what is left of such chips makes a correction that fits their edges and not
+# their sizes, which is refused.
+sed 's/"amplitude_um": 12/"amplitude_um": 24/' tilted.json >more.json
+cat >pins.json <<'DESIGN'
+{"schema": "foilgauge/design/1", "name": "pins", "form": "discs", "diameters_mm": [2, 3, 4, 4.5, 5, 5, 5.5, 6, 6]}
+DESIGN
+"$renderer" render more.json -o more.png || fail "render"
+"$program" loop more.png --design pins.json --without scan.chip_tilt -o more.out || fail "loop on known pins over tilted chips"
+off() { value more.out "max(min(abs(1000 * d['radius_mm'] - 250 * n) for n in range(16)) for d in r['$1']['discs'])"; }
+near "largest error of a radius, um, before" "$(off before)" 0 0.05
+near "largest error of a radius, um, after" "$(off after)" 0 0.05
 exit $failed
