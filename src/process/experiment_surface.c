@@ -77,16 +77,20 @@ fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *e, cons
 }
 
 /* On its sphere or box side or half-space: a little outwards it would be out. */
-bool fg_experiment_on_border(const fg_region *r, const double *x) {
-  double size = 0;
-  for (size_t i = 0; i < r->factors; i++)
-    size = fmax(size, r->high[i] - r->low[i]);
-  for (size_t i = 0; i < r->factors; i++)
+bool fg_experiment_on_border(const fg_region *region, const double *x) {
+  double size = 0, scale[FG_SURFACE_FACTORS], at[FG_SURFACE_FACTORS];
+  fg_region r;
+  fg_region_scale(region, &r, scale);
+  for (size_t i = 0; i < r.factors; i++) {
+    size = fmax(size, r.high[i] - r.low[i]);
+    at[i] = (x[i] - region->centre[i]) / scale[i];
+  }
+  for (size_t i = 0; i < r.factors; i++)
     for (int side = -1; side <= 1; side += 2) {
       double moved[FG_SURFACE_FACTORS];
-      memcpy(moved, x, r->factors * sizeof *x);
+      memcpy(moved, at, r.factors * sizeof *at);
       moved[i] += side * BORDER * size;
-      if (!fg_region_contains(r, moved, BORDER * size / 10)) return true;
+      if (!fg_region_contains(&r, moved, BORDER * size / 10)) return true;
     }
   return false;
 }
