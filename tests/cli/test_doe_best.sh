@@ -168,4 +168,15 @@ analyse stepped valley.csv y 'T*D + T^2 + D^2' --code T=500:600 --code D=3:5 --g
 [ "$(value stepped.json 'abs(r["surface"]["rounded"]["mean"] - 4) < 1e-3 and r["surface"]["rounded"]["real"][0] % 30 < 1e-6')" = \
   True ] || fail "the rounded setting misses a goal that it can reach: $(value stepped.json 'r["surface"]["rounded"]')"
 
+# Expected responses are of the mean of the blocks.
+analyse days days.csv y 'T*P' --block day
+grep -q 'of the mean of these 4 blocks (day), which scatter with a standard deviation of 2\.[0-9]*\. A run in another' days.html ||
+  fail "another block is not told of"
+
+# An effect that differs between dies is said to be that of the first.
+analyse dies dies.csv y 'T*die'
+grep -q 'T matters (at die A): from 500 to 600 it raises the response by [78]\.' dies.txt || fail "the effect's die is not said"
+analyse alike dies.csv y 'T + die'
+grep -q 'T matters: from 500 to 600' alike.txt || fail "an effect of all dies is said to be of one"
+
 exit $failed
