@@ -46,7 +46,8 @@ typedef struct fg_experiment_taken {
   double amplitude, u_amplitude; /* half its range in its own data, and the standard uncertainty */
   size_t parameters;             /* number of parameters estimated for it */
   double low, high;              /* range of the part subtracted from these runs */
-  bool applied; /* false: it belongs to single rows of its own table and is not subtracted */
+  bool applied;       /* false: it belongs to single rows of its own table and is not subtracted */
+  char column[2][96]; /* of the table, that it is over; empty: none */
 } fg_experiment_taken;
 
 #define FG_EXPERIMENT_CONFIDENCE 0.95 /* default level of intervals */
@@ -229,6 +230,10 @@ const fg_experiment *fg_experiment_best(const fg_experiment *experiment);
 
 /* Returns the best setting: the one that can be made, where that was asked for. */
 const fg_optimum *fg_experiment_best_point(const fg_experiment *experiment);
+
+/* Returns true for a subtracted effect that is over factors of the model alone: the response at a
+ * setting has it, and the model of the remainder predicts none. */
+bool fg_experiment_is_of_factors(const fg_experiment *experiment, const fg_experiment_taken *taken);
 
 /* Returns the p value to judge a column by: its own, or Lenth's where no error is known; NaN:
  * neither. */

@@ -117,6 +117,7 @@ typedef struct fg_loop_problem {
   bool few; /* too few groups for curves or tests of the scatter: listed effects of the mean only;
                the caller tests the claims by other means */
   double *response; /* rows, for exchanged runs: the measured response */
+  const size_t *table_row; /* rows: of the caller's table, from 0, for names; NULL: the same */
   double origin; /* subtracted from every residual; the constant of the declared model, of value 1,
                     is larger by it */
   size_t constant; /* parameter; only where the origin is not 0 */
@@ -356,6 +357,7 @@ typedef struct fg_loop_result {
   size_t claims;
   bool has_curve;
   fg_loop_curve curve;
+  fg_loop_candidate far_row; /* beyond normal noise, not claimed; `rows` 0: none */
   fg_loop_checked check[FG_LOOP_CHECKS];
   bool fails; /* one of the tests fails, beside all effects found */
   fg_loop_check failed;

@@ -31,6 +31,7 @@ typedef struct fg_loop_taken {
   size_t parameters;                /* number of parameters estimated for it */
   double low, high;                 /* range of the subtracted effect over the rows */
   bool applied;                     /* false: it belongs to rows of the model's own table */
+  char column[2][FG_LOOP_NAME];     /* that it is over; empty: none */
 } fg_loop_taken;
 
 typedef struct fg_loop_takings {

@@ -78,6 +78,10 @@ bool fg_region_contains(const fg_region *region, const double *x, double toleran
 /* Moves x to the nearest point of the region (Dykstra 1983). FG_ERR_USAGE when the region is empty.
  */
 fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x);
+/* Writes the region in coordinates (x - centre) / scale: without a ball, half ranges of the
+ * factors, whose units may differ by many powers of ten; with a ball, whose factors have one
+ * unit, 1. */
+void fg_region_scale(const fg_region *region, fg_region *scaled, double scale[FG_SURFACE_FACTORS]);
 /* Finds the lowest or highest point of the surface in the region, or the point where it is nearest
  * to `target` (of several, the one nearest to the region's centre). Method: projected gradients
  * from the best of a fixed set of scattered points, so the result is reproducible. FG_ERR_USAGE

@@ -353,6 +353,8 @@ static fg_status describe_taken(fg_context *ctx, doe_run *run) {
     fg_text_clip(to->id, sizeof to->id, "%s", from->id);
     fg_text_clip(to->words, sizeof to->words, "%s", from->words);
     fg_text_clip(to->sentence, sizeof to->sentence, "%s", from->sentence);
+    for (int k = 0; k < 2; k++)
+      fg_text_clip(to->column[k], sizeof to->column[k], "%s", from->column[k]);
   }
   how->taken = run->taken;
   how->takens = takings->count;

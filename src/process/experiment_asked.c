@@ -151,6 +151,7 @@ static fg_status predict_request(fg_context *ctx, const fg_experiment *e, const 
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
                             fg_experiment *e) {
   if (!options->ats) return FG_OK;
+  FG_TRY(fg_experiment_check_taken(ctx, e));
   e->goal = options->goal;
   e->target = options->target;
   FG_TRY(fg_memory_allocate(ctx, options->ats, sizeof *e->asked, (void **)&e->asked));

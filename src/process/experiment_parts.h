@@ -49,6 +49,8 @@ fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experime
 /* Predicts the response at a place of the surface; tests whether a place is on the border. */
 fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *experiment,
                                    const double *x, fg_prediction *prediction);
+/* FG_ERR_USAGE: an effect of the factors was subtracted, without which no response is predicted. */
+fg_status fg_experiment_check_taken(fg_context *ctx, const fg_experiment *e);
 bool fg_experiment_on_border(const fg_region *region, const double *x);
 
 /* Finds the best feasible setting, where steps are given. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/text.h"
 #include "process/experiment_parts.h"
@@ -50,6 +51,19 @@ void fg_experiment_free(fg_experiment *e) {
   free(e->block);
   free(e->whole_plot);
   *e = (fg_experiment){0};
+}
+
+static bool is_factor(const fg_experiment *e, const char *column) {
+  for (size_t v = 0; v < e->model.formula.variables; v++)
+    if (v != e->block_variable && !strcmp(e->model.formula.variable[v].column, column)) return true;
+  return false;
+}
+
+bool fg_experiment_is_of_factors(const fg_experiment *e, const fg_experiment_taken *taken) {
+  if (!taken->applied || !(taken->high > taken->low) || !*taken->column[0]) return false;
+  for (int k = 0; k < 2; k++)
+    if (*taken->column[k] && !is_factor(e, taken->column[k])) return false;
+  return true;
 }
 
 double fg_experiment_p_value(const fg_experiment *e, size_t column) {

@@ -8,6 +8,9 @@
 /* Steps that are tried on each side of the optimum: next to a border the nearest may be outside. */
 enum { REACH = 2, SIDES = 2 * REACH, TRIED_MAX = 1 << 16 };
 
+/* Combinations beside each of which the factors without a step are optimised again. */
+enum { OPTIMISED_MAX = 64 };
+
 static const fg_factor *rounded_factor(const fg_experiment *e, size_t k) {
   for (size_t f = 0; f < e->factors; f++)
     if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
@@ -53,10 +56,28 @@ static double cost_of(const fg_experiment *e, double value) {
   return e->goal == FG_GOAL_HIGHEST ? -value : value;
 }
 
+static bool has_free(const fg_experiment *e) {
+  for (size_t k = 0; k < e->surface.factors; k++)
+    if (!(e->step[k] > 0)) return true;
+  return false;
+}
+
+/* Moves the factors without a step to their best values beside the others; false: none is in the
+ * region. */
+static bool move_free(const fg_experiment *e, double *x) {
+  fg_context quiet = {0};
+  fg_region held = e->region;
+  for (size_t k = 0; k < e->surface.factors; k++)
+    if (e->step[k] > 0) held.low[k] = held.high[k] = x[k];
+  return fg_surface_optimum_region(&quiet, &e->surface, e->goal, e->target, &held, x) == FG_OK;
+}
+
 static bool find_best(const fg_experiment *e, size_t tried, double *best) {
   double min = INFINITY, x[FG_SURFACE_FACTORS];
+  bool move = has_free(e) && tried <= OPTIMISED_MAX;
   for (size_t i = 0; i < tried; i++) {
     combine(e, i, x);
+    if (move && !move_free(e, x)) continue;
     double cost = cost_of(e, fg_surface_value(&e->surface, x));
     if (!(cost < min) || !fg_region_contains(&e->region, x, 1e-9)) continue;
     min = cost;

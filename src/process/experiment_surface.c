@@ -77,16 +77,20 @@ fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *e, cons
 }
 
 /* On its sphere or box side or half-space: a little outwards it would be out. */
-bool fg_experiment_on_border(const fg_region *r, const double *x) {
-  double size = 0;
-  for (size_t i = 0; i < r->factors; i++)
-    size = fmax(size, r->high[i] - r->low[i]);
-  for (size_t i = 0; i < r->factors; i++)
+bool fg_experiment_on_border(const fg_region *region, const double *x) {
+  double size = 0, scale[FG_SURFACE_FACTORS], at[FG_SURFACE_FACTORS];
+  fg_region r;
+  fg_region_scale(region, &r, scale);
+  for (size_t i = 0; i < r.factors; i++) {
+    size = fmax(size, r.high[i] - r.low[i]);
+    at[i] = (x[i] - region->centre[i]) / scale[i];
+  }
+  for (size_t i = 0; i < r.factors; i++)
     for (int side = -1; side <= 1; side += 2) {
       double moved[FG_SURFACE_FACTORS];
-      memcpy(moved, x, r->factors * sizeof *x);
+      memcpy(moved, at, r.factors * sizeof *at);
       moved[i] += side * BORDER * size;
-      if (!fg_region_contains(r, moved, BORDER * size / 10)) return true;
+      if (!fg_region_contains(&r, moved, BORDER * size / 10)) return true;
     }
   return false;
 }
@@ -178,13 +182,25 @@ static fg_status judge_stationary(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
+fg_status fg_experiment_check_taken(fg_context *ctx, const fg_experiment *e) {
+  for (size_t i = 0; i < e->takens; i++)
+    if (fg_experiment_is_of_factors(e, &e->taken[i]))
+      return fg_fail(ctx, FG_ERR_USAGE,
+                     "%s was taken out, and the response at a setting has it: declare it in the "
+                     "formula instead, as the loop's next step says",
+                     e->taken[i].words);
+  return FG_OK;
+}
+
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
                                 const fg_experiment *whole, fg_experiment *e) {
   fg_context words = {0};
   e->goal = options->goal;
   e->target = options->target;
-  fg_status status = whole ? make_surface(&words, e, NULL, &e->surface)
-                           : fg_surface_make(&words, &e->model, &e->regression, NULL, &e->surface);
+  fg_status status = fg_experiment_check_taken(&words, e);
+  if (status == FG_OK)
+    status = whole ? make_surface(&words, e, NULL, &e->surface)
+                   : fg_surface_make(&words, &e->model, &e->regression, NULL, &e->surface);
   if (status == FG_ERR_USAGE) {
     if (options->constraints) return fg_fail(ctx, status, "no optimum: %.900s", words.message);
     return fg_experiment_note(ctx, e, "no optimum: %s", words.message);

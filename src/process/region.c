@@ -100,6 +100,35 @@ fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x)
   return FG_OK;
 }
 
+void fg_region_scale(const fg_region *region, fg_region *scaled, double scale[FG_SURFACE_FACTORS]) {
+  *scaled = *region;
+  for (size_t i = 0; i < region->factors; i++) {
+    double half = (region->high[i] - region->low[i]) / 2;
+    scale[i] = isinf(region->radius) && half > 0 ? half : 1;
+    scaled->low[i] = (region->low[i] - region->centre[i]) / scale[i];
+    scaled->high[i] = (region->high[i] - region->centre[i]) / scale[i];
+    scaled->centre[i] = 0;
+  }
+  for (size_t p = 0; p < region->planes; p++) {
+    scaled->limit[p] -= fg_dot(region->normal[p], region->centre, region->factors);
+    for (size_t i = 0; i < region->factors; i++)
+      scaled->normal[p][i] = region->normal[p][i] * scale[i];
+  }
+}
+
+/* The polynomial of a surface in the same coordinates: all that the search reads. */
+static void scale_surface(const fg_surface *s, const fg_region *r, const double *scale,
+                          fg_surface *scaled) {
+  *scaled = *s;
+  scaled->constant = fg_surface_value(s, r->centre);
+  for (size_t i = 0; i < s->factors; i++) {
+    scaled->linear[i] =
+        scale[i] * (s->linear[i] + 2 * fg_dot(s->quadratic[i], r->centre, s->factors));
+    for (size_t j = 0; j < s->factors; j++)
+      scaled->quadratic[i][j] = s->quadratic[i][j] * scale[i] * scale[j];
+  }
+}
+
 /* Cost function and its gradient. */
 typedef struct objective {
   const fg_surface *surface;
@@ -195,8 +224,8 @@ static void keep_exact(const objective *o, const fg_region *r, start *starts, si
   keep_start(starts, count, &s);
 }
 
-fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, fg_goal goal,
-                                    double target, const fg_region *region, double *x) {
+static fg_status search_region(fg_context *ctx, const fg_surface *surface, fg_goal goal,
+                               double target, const fg_region *region, double *x) {
   const objective o = {surface, goal, target};
   start starts[STARTS + 1], s = {0};
   size_t count = 0, n = region->factors;
@@ -223,5 +252,20 @@ fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, 
     best = starts[i].cost;
     memcpy(x, starts[i].x, n * sizeof *x);
   }
+  return FG_OK;
+}
+
+/* One step is as long in every factor. */
+fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, fg_goal goal,
+                                    double target, const fg_region *region, double *x) {
+  fg_region scaled_region;
+  fg_surface scaled;
+  double scale[MAX];
+  if (!isinf(region->radius)) return search_region(ctx, surface, goal, target, region, x);
+  fg_region_scale(region, &scaled_region, scale);
+  scale_surface(surface, region, scale, &scaled);
+  FG_TRY(search_region(ctx, &scaled, goal, target, &scaled_region, x));
+  for (size_t i = 0; i < region->factors; i++)
+    x[i] = fmin(fmax(region->centre[i] + scale[i] * x[i], region->low[i]), region->high[i]);
   return FG_OK;
 }

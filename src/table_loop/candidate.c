@@ -44,10 +44,16 @@ bool fg_engine_same_cycle(const fg_loop_candidate *a, const fg_loop_candidate *b
   return a->effect->cycle && b->effect->cycle && a->a == b->a;
 }
 
-static void name_rows(const fg_loop_candidate *candidate, char name[FG_LOOP_NAME]) {
+size_t fg_engine_row_number(const fg_loop_problem *problem, size_t row) {
+  return (problem->table_row ? problem->table_row[row] : row) + 1;
+}
+
+static void name_rows(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                      char name[FG_LOOP_NAME]) {
   size_t used = (size_t)snprintf(name, FG_LOOP_NAME, "%s", candidate->effect->id);
   for (size_t k = 0; k < candidate->rows && used < FG_LOOP_NAME; k++, used = strlen(name))
-    fg_text_clip(name + used, FG_LOOP_NAME - used, "%s%zu%s", k ? ", " : "(", candidate->row[k] + 1,
+    fg_text_clip(name + used, FG_LOOP_NAME - used, "%s%zu%s", k ? ", " : "(",
+                 fg_engine_row_number(problem, candidate->row[k]),
                  k + 1 == candidate->rows ? ")" : "");
 }
 
@@ -78,14 +84,15 @@ void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_cand
                               char name[FG_LOOP_NAME]) {
   const char *id = candidate->effect->id;
   if (fg_engine_is_exchange(candidate))
-    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
-                 candidate->row[1] + 1);
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id,
+                 fg_engine_row_number(problem, candidate->row[0]),
+                 fg_engine_row_number(problem, candidate->row[1]));
   else if (fg_engine_is_outlier(candidate) && candidate->effect->pair)
     fg_text_clip(name, FG_LOOP_NAME, "%s(%.24s, %.24s, %zu)", id,
                  problem->coordinate[candidate->a].name, problem->coordinate[candidate->b].name,
-                 candidate->row[0] + 1);
+                 fg_engine_row_number(problem, candidate->row[0]));
   else if (fg_engine_is_outlier(candidate))
-    name_rows(candidate, name);
+    name_rows(problem, candidate, name);
   else if (candidate->effect->pair)
     fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,
                  problem->coordinate[candidate->b].name);

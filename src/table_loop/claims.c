@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "table_loop/between.h"
+#include "table_loop/departures.h"
 #include "table_loop/fit.h"
 #include "table_loop/order_fits.h"
 
@@ -246,6 +247,8 @@ fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, 
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &fit));
   FG_TRY_EXIT(append_slopes(ctx, &training, set, &fit));
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &wide));
+  FG_TRY_EXIT(fg_engine_take_departures(ctx, &training, set, &fit));
+  FG_TRY_EXIT(fg_engine_take_departures(ctx, &training, set, &wide));
   /* The correlation was estimated too. */
   size_t used = wide.rank + training.serial;
   double dof = training.n > used ? (double)(training.n - used) : NAN;

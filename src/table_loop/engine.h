@@ -77,6 +77,9 @@ fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *probl
                                    fg_engine_training *training);
 void fg_engine_training_free(fg_engine_training *training);
 
+/* Returns the number of a row in the caller's table, from 1. */
+size_t fg_engine_row_number(const fg_loop_problem *problem, size_t row);
+
 size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
                                    const fg_loop_candidate *candidate);
 bool fg_engine_is_outlier(const fg_loop_candidate *candidate);

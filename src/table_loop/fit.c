@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "table_loop/departures.h"
 
 static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
                            fg_engine_noise noise, double *value) {
@@ -189,6 +190,7 @@ fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, con
   if (choose) FG_TRY_EXIT(fg_engine_choose_noise(ctx, &training, noise));
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, *noise, &fit));
   if (residual) fg_engine_fit_residual(&all, &fit, residual);
+  FG_TRY_EXIT(fg_engine_take_departures(ctx, &training, set, &fit));
   if (effect) add_effects(&all, &fit, effect);
   double dof = training.n > fit.rank ? (double)(training.n - fit.rank) : NAN;
   if (sd) *sd = sqrt(fit.rss / dof * (1 + noise->lambda + noise->outer));

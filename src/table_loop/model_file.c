@@ -286,6 +286,8 @@ static void describe_effect(const cJSON *json, fg_loop_taken *taken) {
   while (effect->id && strcmp(effect->id, taken->id))
     effect++;
   taken->applied = effect->id != NULL;
+  fg_text_clip(taken->column[0], FG_LOOP_NAME, "%s", names[0]);
+  if (effect->pair) fg_text_clip(taken->column[1], FG_LOOP_NAME, "%s", names[1]);
   if (taken->applied)
     fg_text_clip(taken->words, sizeof taken->words, "%s %s%s%s", effect->words, names[0],
                  effect->pair ? " and " : "", effect->pair ? names[1] : "");
@@ -313,6 +315,7 @@ static void describe_curve(const fg_loop_model *model, const cJSON *json, size_t
   fg_text_clip(taken->words, sizeof taken->words, "a smooth curve over %s",
                cJSON_IsString(name) ? name->valuestring : "");
   taken->applied = true;
+  if (cJSON_IsString(name)) fg_text_clip(taken->column[0], FG_LOOP_NAME, "%s", name->valuestring);
   taken->parameters = (size_t)ceil(dof);
   taken->amplitude = NAN;
   taken->u_amplitude = number_or(model->json, "noise_sd", NAN) * sqrt(dof / (double)rows);

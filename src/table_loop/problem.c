@@ -94,6 +94,7 @@ static fg_status allocate_rows(fg_context *ctx, size_t rows, fg_loop_table_probl
   fg_loop_problem *problem = &out->problem;
   problem->rows = rows;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *out->row, (void **)&out->row));
+  problem->table_row = out->row;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->group, (void **)&problem->group));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->series, (void **)&problem->series));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->held_out, (void **)&problem->held_out));

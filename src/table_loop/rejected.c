@@ -117,12 +117,13 @@ static fg_status note_tail(fg_context *ctx, fg_engine_run *run, const fg_engine_
   const fg_engine_outlier *outlier = &step->outlier;
   double level = run->options.accept_p;
   if (!outlier->known || !(outlier->normal_p < level) || outlier->p_value < level) return FG_OK;
+  run->result->far_row = outlier->first;
   return fg_engine_note(ctx, run->result,
                         "Row %zu lies %.1f standard deviations of the others from where they have "
                         "it: more than normal noise reaches. These rows cannot tell a wrong value "
                         "from a scatter with heavy tails, so none is claimed; look at how that row "
                         "was measured.",
-                        outlier->first.row[0] + 1, outlier->size);
+                        fg_engine_row_number(run->problem, outlier->first.row[0]), outlier->size);
 }
 
 fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {

@@ -7,7 +7,8 @@
 #define SMALLEST   0.02
 #define STEEPEST   5.0
 #define SLOPE_STEP 0.5
-enum { ROUNDS = 5 };
+/* Parabolas through the best slope and its neighbours, each with a step so many times smaller. */
+enum { ROUNDS = 5, PARABOLAS = 2, FINER = 5 };
 
 typedef struct weighted {
   const fg_engine_span *null;
@@ -66,12 +67,30 @@ static double of_levels(const weighted *w, const size_t *level) {
   return best;
 }
 
+static double at_slope(const weighted *w, const double *z, double slope) {
+  for (size_t i = 0; i < w->null->n; i++)
+    w->scale[i] = exp(slope * z[i]);
+  return fit_weighted(w);
+}
+
+/* The likelihood between the slopes of the grid: without it a gain of less than two standard errors
+ * would be 0, and the draws of the null would have no scale. */
 static double of_slope(const weighted *w, const double *z) {
-  double best = -INFINITY;
+  double best = -INFINITY, at = 0, step = SLOPE_STEP;
   for (double slope = -STEEPEST; slope <= STEEPEST; slope += SLOPE_STEP) {
-    for (size_t i = 0; i < w->null->n; i++)
-      w->scale[i] = exp(slope * z[i]);
-    best = fmax(best, fit_weighted(w));
+    double value = at_slope(w, z, slope);
+    if (!(value > best)) continue;
+    best = value;
+    at = slope;
+  }
+  for (int k = 0; k < PARABOLAS; k++, step /= FINER) {
+    double below = at_slope(w, z, at - step), above = at_slope(w, z, at + step),
+           bend = below - 2 * best + above, vertex = at + step * (below - above) / (2 * bend);
+    if (!(bend < 0) || !(fabs(vertex - at) <= step)) break;
+    double value = at_slope(w, z, vertex);
+    if (!(value > best)) continue;
+    best = value;
+    at = vertex;
   }
   return best;
 }

@@ -128,4 +128,55 @@ grep -q 'the response is curved; the squares of the model say in which factor' s
 analyse corners corners.csv springback_um 'temperature_C + duration_h + pressure_bar'
 grep -q 'the response is curved; axial runs would tell in which factor' corners.txt || fail "no axial runs here"
 
+# Units that differ by many powers of ten: the same optimum, coded or not, and inside where it lies inside.
+python3 - <<'P'
+import random
+rng, points = random.Random(3), [(-1, -1), (1, -1), (-1, 1), (1, 1), (0, 0), (0, 0), (0, 0)]
+points += [(-1.4, 0), (1.4, 0), (0, -1.4), (0, 1.4)]
+noise = [rng.gauss(0, 0.03) for _ in points]
+with open("units.csv", "w") as out, open("valley.csv", "w") as valley:
+    out.write("p_Pa,e_m,y\n")
+    valley.write("T,D,y\n")
+    for (a, b), e in zip(points, noise):
+        out.write(f"{550 + 5e5 * a},{1e-4 + 2e-5 * b:.8f},{5 + 0.8 * (a - 0.5) ** 2 + 0.6 * (b + 0.3) ** 2 + e:.4f}\n")
+        valley.write(f"{550 + 50 * a},{4 + b},{3 + 4 * (a - b) ** 2 + 0.3 * (a + b - 0.3) ** 2 + e:.4f}\n")
+with open("days.csv", "w") as days, open("dies.csv", "w") as dies:
+    days.write("day,T,P,y\n")
+    dies.write("die,T,y\n")
+    for i, day in enumerate((0, 3, -2, 1)):
+        for a, b in points[:4]:
+            days.write(f"d{i},{550 + 50 * a},{300 + 50 * b},{20 + day + 2 * a - b + rng.gauss(0, 0.3):.4f}\n")
+            dies.write(f"{'ABAB'[i]},{550 + 50 * a},{20 + (1 if i % 2 else 4) * a + rng.gauss(0, 0.3):.4f}\n")
+P
+for goal in lowest 5.4; do
+  for limit in '2e-6*p_Pa + 5e4*e_m <= 5.7' 'p_Pa <= 1e9'; do
+    analyse coded units.csv y 'p_Pa*e_m + p_Pa^2 + e_m^2' --goal $goal --constraint "$limit"
+    analyse real units.csv y 'p_Pa*e_m + p_Pa^2 + e_m^2' --goal $goal --constraint "$limit" --code none
+    checks - "$goal" <<'P' || fail "the optimum depends on the units: $goal, $limit"
+import json, sys
+coded, real = (json.load(open(n + ".json"))["surface"]["optimum"] for n in ("coded", "real"))
+assert abs(coded["mean"] - real["mean"]) < 1e-6, (coded, real)
+assert coded["on_border"] == real["on_border"], (coded, real)
+if sys.argv[1] == "lowest":
+    assert abs(coded["real"][0] - real["real"][0]) < 10 and abs(coded["real"][1] - real["real"][1]) < 1e-9, (coded, real)
+P
+  done
+done
+
+# A factor without a step goes to its best beside the rounded one.
+analyse stepped valley.csv y 'T*D + T^2 + D^2' --code T=500:600 --code D=3:5 --goal 4 --round T=30
+[ "$(value stepped.json 'abs(r["surface"]["rounded"]["mean"] - 4) < 1e-3 and r["surface"]["rounded"]["real"][0] % 30 < 1e-6')" = \
+  True ] || fail "the rounded setting misses a goal that it can reach: $(value stepped.json 'r["surface"]["rounded"]')"
+
+# Expected responses are of the mean of the blocks.
+analyse days days.csv y 'T*P' --block day
+grep -q 'of the mean of these 4 blocks (day), which scatter with a standard deviation of 2\.[0-9]*\. A run in another' days.html ||
+  fail "another block is not told of"
+
+# An effect that differs between dies is said to be that of the first.
+analyse dies dies.csv y 'T*die'
+grep -q 'T matters (at die A): from 500 to 600 it raises the response by [78]\.' dies.txt || fail "the effect's die is not said"
+analyse alike dies.csv y 'T + die'
+grep -q 'T matters: from 500 to 600' alike.txt || fail "an effect of all dies is said to be of one"
+
 exit $failed

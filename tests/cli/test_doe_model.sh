@@ -80,6 +80,32 @@ valid doe.schema.json more.out.json
 head -5 runs.csv >few.csv
 expect 65 'no freedom is left' "$program" doe few.csv --response y --model more.json --code none -o never.json
 
+# An effect of the model's own factors is part of every response: no best setting without it. Declared, it has one.
+python3 - <<'P'
+import random
+rng = random.Random(4)
+with open("cross.csv", "w") as out:
+    out.write("run,T,D,y\n")
+    for i in range(32):
+        T, D = 500 + 100 * (i * 5 % 2), 3 + 2 * (i // 2 % 2)
+        out.write(f"{i + 1},{T},{D},{20 + (T - 550) / 50 + 3 * (T - 550) / 50 * (D - 4) + rng.gauss(0, 0.5):.4f}\n")
+P
+expect 0 '' "$program" loop --table cross.csv --response y --model 'T + D' --model-out cross.json -o cross.loop.json
+expect 0 '' "$program" doe cross.csv --response y --model cross.json -o cross.out.json --html cross.html
+checks - <<'P' || fail "a best setting without an interaction of its factors"
+import json
+report = json.load(open("cross.out.json"))
+assert report["surface"] is None, report["surface"]
+assert any(t.startswith("No best setting: an interaction of T and D is of the model's own factors") for t in report["conclusions"])
+assert any("declare it in the formula" in n for n in report["notes"]), report["notes"]
+assert not any("Expected response" in t for t in report["conclusions"]), report["conclusions"]
+P
+valid doe.schema.json cross.out.json
+grep -q 'No best setting: an interaction of T and D' cross.html || fail "the page does not say why there is no best setting"
+expect 64 'declare it in the formula' "$program" doe cross.csv --response y --model cross.json --at 'T=500, D=5' -o never.json
+expect 0 '' "$program" doe cross.csv --response y --model 'T + D + T:D' -o cross.declared.json
+[ "$(value cross.declared.json 'r["surface"]["optimum"]["real"]')" = '[500, 5]' ] || fail "the declared interaction's optimum"
+
 # The same rows without the column, under another name, beyond what the model has seen.
 cut -d, -f1,2,4,5 runs.csv >without.csv
 sed '1s/humidity/damp/' runs.csv >renamed.csv

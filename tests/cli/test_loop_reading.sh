@@ -25,6 +25,8 @@ write("trend", "run,x,humidity_pct,gap_um", lambda i, x: (i, x, h := (30.0, 60.0
 write("step", "run,x,gap_um", lambda i, x: (i, x, 3 + 2 * x + 0.8 * (i >= 35)))
 write("cycle", "run,x,gap_um", lambda i, x: (i, x, 3 + 2 * x + 0.4 * math.sin(2 * math.pi * i / 9)))
 write("bend", "run,x,t_C,gap_um", lambda i, x: (i, x, t := (400.0, 700.0)[i] if i < 2 else rng.uniform(400, 700), 3 + 2 * x + 1.5 * ((t - 500) / 150) ** 2))
+write("heats", "run,x,t_C,gap_um", lambda i, x: (i, x, t := (500.0, 550.0, 600.0, 650.0)[i * 7 % 4], 3 + 2 * x + 0.6 * (t in (550, 650))))
+write("arch", "run,x,t_C,gap_um", lambda i, x: (i, x, t := (400.0, 700.0)[i] if i < 2 else rng.uniform(400, 700), 3 + 2 * x + 0.01 * (t - 550) - 0.6 * ((t - 550) / 150) ** 2))
 write("product", "run,t_C,d_h,gap_um", lambda i, x: (i, t := (500.0, 600.0)[i] if i < 2 else rng.uniform(500, 600), d := (3.0, 5.0)[i] if i < 2 else rng.uniform(3, 5), 3 + (t - 550) / 50 - 0.5 * (d - 4) + 0.4 * (t - 550) / 50 * (d - 4)))
 write("slopes", "run,t_C,die,gap_um", lambda i, x: (i, t := (500.0, 600.0)[i] if i < 2 else rng.uniform(500, 600), d := "KL"[i * 3 % 2], 3 + (t - 550) / 50 * (1.6 if d == "L" else 1)))
 write("cells", "run,operator,die,gap_um", lambda i, x: (i, o := "AB"[i % 2], d := "KL"[i // 2 % 2], 3 + 0.5 * (o == "B") + 0.4 * (d == "L") + 0.6 * (o == "B" and d == "L")))
@@ -76,6 +78,15 @@ reads trend x 'it falls by # µm from humidity 30 % to 60 %' 0.9
 reads step x 'beyond it the response is # µm higher' 0.8
 reads cycle x 'it swings by # µm from peak to valley' 0.8
 reads bend x '°C, and # µm higher at t 700 °C' 2.6667
+# Beside the declared slope the response itself may rise where the effect falls. All that a slope explains of the levels is the slope.
+reads heats 'x + t_C' "beside the model's own terms in t, t 550 °C reads # µm higher than t 600 °C, the lowest of 4" 0.72
+checks - <<'P' || fail "the slope beside the levels"
+import json
+slope, = [p for p in json.load(open("heats.json"))["declared_parameters"] if p["name"] == "t_C"]
+assert abs(slope["value"] - 0.12 / 50) < 4 * slope["u_value"] < 0.002, slope
+P
+reads arch 'x + t_C' "°C, and # µm lower at t 700 °C" 0.6
+grep -q "a bent trend with t_C: beside the model's own terms in t, it is highest near" arch.json || fail "a bend beside a slope"
 reads product 't_C + d_h' 'the change from t 500 °C to 600 °C is # µm higher at d 5 h than at d 3 h' 1.6
 reads slopes 't_C + die' 'the change from t 500 °C to 600 °C is # µm higher for die L than for die K' 1.2
 reads cells 'operator + die' 'operator B over operator A is # µm higher for die L than for die K' 0.6

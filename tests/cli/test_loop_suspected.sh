@@ -101,4 +101,25 @@ assert not any("(row)" in c["name"] for c in r["claims"] + r["suspects"] + r["re
 r = json.load(open("shuffled.json"))
 assert any("(row)" in c["name"] for c in r["rejected"]), "rows in a random order keep their number"
 END
+# A row far out among others is neither claimed nor cleared: its number is that of the file, whatever the order of the runs.
+python3 - <<'P'
+import random
+rng = random.Random(2)
+rows = [(i + 1, 500 + 100 * (i * 5 % 2), 20 + rng.gauss(0, 1) + (8 if i == 7 else 0)) for i in range(32)]
+rng.shuffle(rows)
+rows.sort(key=lambda row: row[0] == 8, reverse=True)
+rows[0], rows[2] = rows[2], rows[0]
+with open("far.csv", "w") as out:
+    out.write("run,T,y\n" + "".join(f"{run},{T},{y:.4f}\n" for run, T, y in rows))
+P
+expect 0 '' "$program" loop --table far.csv --response y --model T -o far.json --html far.html
+python3 - <<'END' || fail "the row of the file"
+import json
+r = json.load(open("far.json"))
+assert r["verdict"] == "clean" and not r["claims"], (r["verdict"], r["claims"])
+assert any(n.startswith("Row 3 lies ") for n in r["notes"]), r["notes"]
+assert "table.outlier(3)" in [one["name"] for one in r["rejected"]], [one["name"] for one in r["rejected"]]
+assert r["next_steps"][0].startswith("Look up row 3 in the records: it lies farther out"), r["next_steps"]
+END
+
 exit $failed

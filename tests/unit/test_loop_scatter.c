@@ -11,6 +11,7 @@
 #include "foilgauge/loop_table.h"
 #include "support/random.h"
 #include "support/test.h"
+#include "table_loop/spread_likelihood.h"
 #include "table_loop/tails.h"
 
 enum { ROWS = 120 };
@@ -232,6 +233,42 @@ static void a_spread_of_few_runs_is_found_beside_what_it_does_to_the_fit(void **
   assert_true(found >= 9);
 }
 
+/* Twice the restricted log likelihood of rows about one constant, with sd exp(slope z). */
+static double likelihood_of_slope(const double *z, const double *y, double slope) {
+  double weights = 0, mean = 0, logs = 0, squares = 0;
+  for (size_t i = 0; i < RUNS; i++) {
+    double weight = exp(-2 * slope * z[i]);
+    weights += weight;
+    mean += weight * y[i];
+    logs += 2 * slope * z[i];
+  }
+  mean /= weights;
+  for (size_t i = 0; i < RUNS; i++)
+    squares += exp(-2 * slope * z[i]) * (y[i] - mean) * (y[i] - mean);
+  return -((RUNS - 1) * log(squares) + logs + log(weights / RUNS));
+}
+
+/* Were gains below some size 0, most tables would have none, and the least gain would be proof. */
+static void a_small_gain_of_a_spread_is_not_zero(void **state) {
+  enum { TABLES = 40, STEPS = 3000 };
+  (void)state;
+  for (uint64_t table = 0; table < TABLES; table++) {
+    double basis[RUNS], kept[RUNS], z[RUNS], y[RUNS], best = -INFINITY;
+    uint64_t seed = 90 + table;
+    for (size_t i = 0; i < RUNS; i++) {
+      basis[i] = 1 / sqrt(RUNS);
+      kept[i] = 1 - 1.0 / RUNS;
+      z[i] = i % 2 ? 1 : -1;
+      y[i] = random_gaussian(&seed);
+    }
+    for (int k = -STEPS; k <= STEPS; k++)
+      best = fmax(best, likelihood_of_slope(z, y, k / 1000.0));
+    const fg_engine_span null = {.n = RUNS, .rank = 1, .basis = basis, .kept = kept};
+    double gain = fg_engine_spread_gain(&null, (fg_engine_spread_rows){.z = z}, y);
+    assert_true(fabs(gain - (best - likelihood_of_slope(z, y, 0))) < 0.002);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(neighbours_that_are_alike_are_said),
@@ -243,6 +280,7 @@ int main(void) {
       cmocka_unit_test(no_verdict_hangs_on_seed_origin_or_unit),
       cmocka_unit_test(sorted_rows_have_no_order),
       cmocka_unit_test(a_spread_of_few_runs_is_found_beside_what_it_does_to_the_fit),
+      cmocka_unit_test(a_small_gain_of_a_spread_is_not_zero),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,12 +67,33 @@ void fg_sentences_free(fg_sentences *s) {
   *s = (fg_sentences){0};
 }
 
+static bool interacts(const fg_experiment *e, size_t variable, size_t other) {
+  for (size_t t = 0; t < e->model.formula.terms; t++)
+    if (e->model.formula.term[t].power[variable] && e->model.formula.term[t].power[other])
+      return true;
+  return false;
+}
+
+void fg_experiment_reference_words(const fg_experiment *e, size_t variable, char *text,
+                                   size_t size) {
+  *text = '\0';
+  for (size_t v = 0; v < e->model.formula.variables; v++) {
+    size_t used = strlen(text);
+    if (!e->model.levels[v].count || v == e->block_variable || !interacts(e, variable, v)) continue;
+    fg_text_clip(text + used, size - used, "%s %s %s", used ? "," : " (at",
+                 e->model.formula.variable[v].name, e->model.levels[v].name[0]);
+  }
+  size_t used = strlen(text);
+  if (used) fg_text_clip(text + used, size - used, ")");
+}
+
 static fg_status conclude_effect(fg_context *ctx, const fg_experiment *e, size_t j,
                                  fg_sentences *s) {
   const fg_coefficient *c = &e->regression.coefficient[j];
   const fg_experiment_effect *effect = &e->effect[j];
   const fg_factor *factor = fg_experiment_main_factor(e, j);
-  char p_value[16], interval[200] = "", by[80], min[80], max[80], name[300], from[80], to[80];
+  char p_value[16], interval[200] = "", by[80], min[80], max[80], name[300], from[80], to[80],
+                    reference[300];
   double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
   fg_p_value_text(p_value, fg_experiment_p_value(e, j));
   const char *equals = *p_value == '<' ? "" : "= ";
@@ -87,9 +108,10 @@ static fg_status conclude_effect(fg_context *ctx, const fg_experiment *e, size_t
     fg_value_with_unit(factor->name, fg_factor_real(factor, -1), 6, from, sizeof from);
     fg_value_with_unit(factor->name, fg_factor_real(factor, 1), 6, to, sizeof to);
     fg_value_with_unit(e->response, fabs(change), 3, by, sizeof by);
+    fg_experiment_reference_words(e, factor->variable, reference, sizeof reference);
     return fg_sentences_add(
-        ctx, s, "%s matters: from %s to %s it %s the response by %s%s (p %s%s).", name, from, to,
-        change < 0 ? "lowers" : "raises", by, interval, equals, p_value);
+        ctx, s, "%s matters%s: from %s to %s it %s the response by %s%s (p %s%s).", name, reference,
+        from, to, change < 0 ? "lowers" : "raises", by, interval, equals, p_value);
   }
   return fg_sentences_add(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate,
                           equals, p_value);
@@ -97,7 +119,7 @@ static fg_status conclude_effect(fg_context *ctx, const fg_experiment *e, size_t
 
 static fg_status conclude_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   size_t found = 0, judged = 0;
-  char rest[600] = "";
+  char rest[600] = "", reference[300];
   for (size_t j = 0; j < e->regression.columns; j++) {
     if (!fg_experiment_of_interest(e, j) || !isfinite(fg_experiment_p_value(e, j))) continue;
     judged++;
@@ -105,9 +127,12 @@ static fg_status conclude_effects(fg_context *ctx, const fg_experiment *e, fg_se
       found++;
       FG_TRY(conclude_effect(ctx, e, j, s));
     } else {
+      const fg_factor *factor = fg_experiment_main_factor(e, j);
       size_t used = strlen(rest);
-      fg_text_clip(rest + used, sizeof rest - used, "%s%s", used ? ", " : "",
-                   e->regression.coefficient[j].name);
+      *reference = '\0';
+      if (factor) fg_experiment_reference_words(e, factor->variable, reference, sizeof reference);
+      fg_text_clip(rest + used, sizeof rest - used, "%s%s%s", used ? ", " : "",
+                   e->regression.coefficient[j].name, reference);
     }
   }
   if (!judged)
@@ -218,6 +243,7 @@ fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report 
   FG_TRY_EXIT(fg_experiment_conclude_taken(ctx, report, s));
   FG_TRY_EXIT(fg_experiment_conclude_best(ctx, e, s));
   FG_TRY_EXIT(fg_experiment_conclude_asked(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_conclude_blocks(ctx, e, s));
   FG_TRY_EXIT(conclude_effects(ctx, e, s));
   FG_TRY_EXIT(conclude_quality(ctx, e, s));
   FG_TRY_EXIT(conclude_curvature(ctx, e, s));

@@ -40,6 +40,15 @@ fg_status fg_experiment_conclude_lack(fg_context *ctx, const fg_experiment *expe
 fg_status fg_experiment_conclude_asked(fg_context *ctx, const fg_experiment *experiment,
                                        fg_sentences *sentences);
 
+/* Adds what the blocks do to every expected response. */
+fg_status fg_experiment_conclude_blocks(fg_context *ctx, const fg_experiment *experiment,
+                                        fg_sentences *sentences);
+
+/* Writes the levels that an effect of a numeric factor is of, where the model lets it differ
+ * between levels of words: " (at die A)"; empty: of all. */
+void fg_experiment_reference_words(const fg_experiment *experiment, size_t variable, char *text,
+                                   size_t size);
+
 /* Returns the command of the loop on tables for the same data and model. The caller frees it. */
 fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report *report,
                                      char **command);

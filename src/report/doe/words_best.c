@@ -158,7 +158,7 @@ static fg_status conclude_no_best(fg_context *ctx, const fg_experiment *e, fg_se
 static fg_status conclude_idle(fg_context *ctx, const fg_experiment *e, const fg_idle_factor *idle,
                                fg_sentences *s) {
   const char *column = e->model.formula.variable[idle->variable].column;
-  char name[300], p_value[60] = "", p[16], change[400] = "", n[5][80];
+  char name[300], p_value[60] = "", p[16], change[700] = "", n[5][80], reference[300];
   fg_name_words(column, name, sizeof name);
   fg_p_value_text(p, idle->p_value);
   if (isfinite(idle->p_value))
@@ -173,9 +173,10 @@ static fg_status conclude_idle(fg_context *ctx, const fg_experiment *e, const fg
                        sizeof n[2]);
     fg_value_with_unit(e->response, 2 * e->effect[j].low, 2, n[3], sizeof n[3]);
     fg_value_with_unit(e->response, 2 * e->effect[j].high, 2, n[4], sizeof n[4]);
+    fg_experiment_reference_words(e, idle->variable, reference, sizeof reference);
     fg_text_clip(change, sizeof change,
-                 "; from %s to %s it changes the response by %s, %g %% interval %s to %s", n[0],
-                 n[1], n[2], 100 * e->confidence, n[3], n[4]);
+                 "; from %s to %s it changes the response by %s%s, %g %% interval %s to %s", n[0],
+                 n[1], n[2], reference, 100 * e->confidence, n[3], n[4]);
   }
   return fg_sentences_add(ctx, s,
                           "%s cannot be told from the scatter%s: as far as these runs tell any "
@@ -256,4 +257,34 @@ fg_status fg_experiment_conclude_best(fg_context *ctx, const fg_experiment *e, f
   FG_TRY(conclude_trust(ctx, e, s));
   s->trusts = s->count - s->trust;
   return conclude_idles(ctx, e, s);
+}
+
+/* Standard deviation of the blocks' estimates, of which the first is 0; NaN: one is aliased. */
+static double scatter_of_blocks(const fg_experiment *e, size_t *blocks) {
+  double sum = 0, squares = 0;
+  *blocks = 1;
+  for (size_t j = 0; j < e->regression.columns; j++) {
+    const fg_coefficient *c = &e->regression.coefficient[j];
+    if (!e->effect[j].block) continue;
+    if (c->aliased) return NAN;
+    ++*blocks;
+    sum += c->estimate;
+    squares += c->estimate * c->estimate;
+  }
+  double count = (double)*blocks;
+  return *blocks > 1 ? sqrt(fmax(squares - sum * sum / count, 0) / (count - 1)) : NAN;
+}
+
+fg_status fg_experiment_conclude_blocks(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  size_t blocks;
+  char scatter[80];
+  if (!e->block || (!e->has_optimum && !e->askeds)) return FG_OK;
+  double sd = scatter_of_blocks(e, &blocks);
+  if (!isfinite(sd)) return FG_OK;
+  fg_value_with_unit(e->response, sd, 3, scatter, sizeof scatter);
+  return fg_sentences_add(ctx, s,
+                          "Expected responses and their intervals are of the mean of these %zu "
+                          "blocks (%s), which scatter with a standard deviation of %s. A run in "
+                          "another block scatters by that as well: it may fall outside.",
+                          blocks, e->block, scatter);
 }

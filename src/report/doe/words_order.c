@@ -55,6 +55,13 @@ fg_status fg_experiment_conclude_taken(fg_context *ctx, const fg_experiment_repo
   const fg_experiment *e = report->experiment;
   for (size_t i = 0; i < e->takens; i++)
     FG_TRY(conclude_one_taken(ctx, &e->taken[i], s));
+  for (size_t i = 0; i < e->takens; i++)
+    if (fg_experiment_is_of_factors(e, &e->taken[i]))
+      FG_TRY(fg_sentences_add(ctx, s,
+                              "No best setting: %s is of the model's own factors, and the response "
+                              "at a setting has it. Declare it in the formula instead, as the "
+                              "loop's next step says.",
+                              e->taken[i].words));
   if (!e->dof_taken) return FG_OK;
   if (!e->regression.residual_dof)
     return fg_sentences_add(ctx, s,

@@ -294,6 +294,12 @@ void fg_loop_next_step(const fg_loop_report *report, size_t step, char text[FG_L
     fg_text_clip(text, FG_LOOP_STEP,
                  "Add rows, or measure again, and run the loop on all of them: these rows neither "
                  "prove what is suspected nor clear the model of it.");
+  } else if (result->far_row.rows) {
+    fg_loop_rows_words(report, &result->far_row, words);
+    fg_text_clip(text, FG_LOOP_STEP,
+                 "Look up %s in the records: it lies farther out than normal noise reaches, which "
+                 "the other rows neither call a slip nor clear of one.",
+                 words);
   } else {
     fg_text_clip(text, FG_LOOP_STEP,
                  "Nothing. What is called inconclusive below could still be there, smaller than "

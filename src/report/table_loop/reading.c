@@ -285,6 +285,17 @@ static void read_exchange(const reading *r) {
   fg_text_clip(r->text, FG_LOOP_WORDS, "their responses are %s apart", range);
 }
 
+/* Levels, a bend, a step or a wave over a column that the declared model uses as a number
+ * departs from the model's own terms in it: the response itself may rise where the effect falls. */
+static bool departs(const reading *r) {
+  static const bool over_places[FG_LOOP_READINGS] = {[FG_LOOP_READS_BEND] = true,
+                                                     [FG_LOOP_READS_LEVELS] = true,
+                                                     [FG_LOOP_READS_STEP] = true,
+                                                     [FG_LOOP_READS_SWING] = true};
+  return r->a && over_places[r->claim->candidate.effect->reads] && !r->a->levels &&
+         r->a->roles & FG_LOOP_DECLARED;
+}
+
 /* "operator B reads 0.592 ± 0.093 µm higher than operator A", "it rises by 0.72 ± 0.10 from the
  * first run to the last": of claims of the mean and of single rows. U is of 95 %, by Student's t.
  */
@@ -304,6 +315,11 @@ static void write_reading(const fg_loop_report *report, const fg_loop_claim *cla
                      own ? &at[claim->candidate.b] : NULL, text};
   *text = '\0';
   readers[claim->candidate.effect->reads](&r);
+  if (!departs(&r)) return;
+  char name[FG_LOOP_NAME], words[FG_LOOP_WORDS];
+  fg_name_words(r.a->name, name, sizeof name);
+  memcpy(words, text, sizeof words);
+  fg_text_clip(text, FG_LOOP_WORDS, "beside the model's own terms in %s, %s", name, words);
 }
 
 double fg_loop_readable_size(const fg_loop_candidate *candidate, double amplitude) {
