@@ -204,10 +204,12 @@ static double process_sigma(const fg_lot_quantity *quantity) {
   return sqrt(fmax(between, 0) + within);
 }
 
-fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity) {
+fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, size_t foils,
+                                  fg_lot_quantity *quantity) {
   if (!quantity->tolerance || !quantity->has_chart || !(quantity->sd > 0)) return FG_OK;
   const fg_capability_input input = {.values = quantity->value,
                                      .count = quantity->count,
+                                     .groups = {quantity->size, foils},
                                      .lower = quantity->tolerance->lower,
                                      .upper = quantity->tolerance->upper,
                                      .sigma = process_sigma(quantity),
@@ -228,7 +230,7 @@ static fg_status analyse_quantity(fg_context *ctx, void *shared, size_t i) {
   FG_TRY(describe_values(ctx, settings, quantity));
   FG_TRY(describe_places(ctx, analysis, quantity));
   FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, analysis->foil_count, quantity));
-  return fg_lot_judge_capability(ctx, settings->confidence, quantity);
+  return fg_lot_judge_capability(ctx, settings->confidence, analysis->foil_count, quantity);
 }
 
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
