@@ -36,7 +36,7 @@ def connect(address, first, narrow=False):
 def address(k):
     return "127.0.0.%d" % (2 + k)
 longest, asked = {}, {}
-# Who is locked out waits for the 15 s after which the others are cut off; beside other tests a page may take its second.
+# A page that is locked out comes after the 15 s in which the others are cut off; beside other tests it may take a second.
 MOST = 1 if long else 5
 def ask(what, path=""):
     began = time.monotonic()
