@@ -13,7 +13,8 @@
  * Values of one group (bumps of a foil) share the group's level and are not independent. Then the
  * variance of a value is B / n0 + (1 - 1 / n0) W, B and W the mean squares between and within the
  * groups, n0 the mean number of values of a group; its interval is that of Graybill and Wang 1980,
- * and Ppk joins it with the mean's (Zou and Donner 2008). Normality is tested of the groups' means
+ * and Ppk joins it with the mean's (Zou and Donner 2008); of one group alone there is none.
+ * Normality is tested of the groups' means
  * and of the deviations from them, as two tests.
  */
 #ifndef FOILGAUGE_CAPABILITY_H

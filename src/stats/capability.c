@@ -165,11 +165,11 @@ static spread grouped_spread(const fg_capability_input *input, double mean, doub
                   .mean_count = variance / (level * squares / (n * n) + w / n)};
 }
 
-static bool is_grouped(const fg_capability_input *input) {
+static bool is_one_group(fg_value_groups groups) {
   size_t known = 0;
-  for (size_t i = 0; input->groups.size && i < input->groups.count; i++)
-    known += input->groups.size[i] > 0;
-  return known > 1 && has_groups(input->groups);
+  for (size_t i = 0; i < groups.count; i++)
+    known += groups.size[i] > 0;
+  return known == 1;
 }
 
 /* ---- ratios ---- */
@@ -241,7 +241,10 @@ fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *inpu
   double distance = fg_margin_to(input->lower, input->upper, capability->mean).inside;
   capability->p = spread_ratio(width, capability->sd, n - 1, alpha);
   capability->pk = room_ratio(distance, capability->sd, n, n - 1, alpha);
-  if (is_grouped(input)) {
+  if (has_groups(input->groups) && is_one_group(input->groups)) {
+    /* One group does not tell how groups differ. */
+    capability->p.low = capability->p.high = capability->pk.low = capability->pk.high = NAN;
+  } else if (has_groups(input->groups)) {
     spread s = grouped_spread(input, capability->mean, alpha);
     apply_groups(&s, width, distance, alpha, capability);
     n = fmin(n, s.mean_count);

@@ -287,6 +287,11 @@ static void capability_of_groups_of_one(void **state) {
   assert_near(grouped.p.low, alone.p.low, 0);
   assert_near(grouped.pk.high, alone.pk.high, 0);
   assert_near(grouped.normality.a2, alone.normality.a2, 0);
+  size[0] = NX; /* one group of all: how groups differ is not known */
+  input.groups = (fg_value_groups){size, 1};
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &grouped));
+  assert_near(grouped.p.value, alone.p.value, 0);
+  assert_true(isnan(grouped.p.low) && isnan(grouped.pk.high));
 }
 
 /* The quantile method on a density that is nearly one normal kernel agrees with the other. */
