@@ -9,6 +9,13 @@
  * quantile method: 6 s becomes X99.865 - X0.135, the mean becomes X50, all of the kernel density.
  *
  * Intervals: Pp sqrt(chi2(a/2, f) / f); Ppk ± z sqrt(1/(9 n) + Ppk² / (2 f)).
+ *
+ * Values of one group (bumps of a foil) share the group's level and are not independent. Then the
+ * variance of a value is B / n0 + (1 - 1 / n0) W, B and W the mean squares between and within the
+ * groups, n0 the mean number of values of a group; its interval is that of Graybill and Wang 1980,
+ * and Ppk joins it with the mean's (Zou and Donner 2008); of one group alone there is none.
+ * Normality is tested of the groups' means
+ * and of the deviations from them, as two tests.
  */
 #ifndef FOILGAUGE_CAPABILITY_H
 #define FOILGAUGE_CAPABILITY_H
@@ -28,8 +35,18 @@ typedef struct fg_normality {
   double p_value; /* NaN for fewer than 8 values */
 } fg_normality;
 
+/* Values in groups, group by group; an empty group may be among them. */
+typedef struct fg_value_groups {
+  const size_t *size; /* number of values of each group; NULL: the values are independent */
+  size_t count;
+} fg_value_groups;
+
 fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
                             fg_normality *normality);
+
+/* Returns the test of the two that rejects more, its p doubled for their number. */
+fg_status fg_normality_test_groups(fg_context *ctx, const double *values, size_t count,
+                                   fg_value_groups groups, fg_normality *normality);
 
 typedef struct fg_ratio {
   double value, low, high; /* with its confidence interval; NaN where it cannot be said */
@@ -50,6 +67,7 @@ typedef struct fg_capability {
 typedef struct fg_capability_input {
   const double *values;
   size_t count;
+  fg_value_groups groups;
   double lower, upper; /* -inf, +inf: none */
   double sigma;        /* within subgroups; NaN: not known */
   double sigma_dof;    /* its degrees of freedom */

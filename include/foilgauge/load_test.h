@@ -163,6 +163,9 @@ enum {
   FG_LOAD_BRANCHES_APART = 1 << 13, /* loading and unloading contacts contradict each other */
   FG_LOAD_GAP_UNKNOWN = 1 << 14,    /* the data do not show whether there is a gap */
   FG_LOAD_OUTLIERS = 1 << 15,       /* isolated wrong readings, excluded */
+  FG_LOAD_SATURATED = 1 << 16,      /* an instrument stood at the end of its range */
+  FG_LOAD_LOOPS = 1 << 17,          /* loops within strokes, excluded */
+  FG_LOAD_ONE_SENSE = 1 << 18,      /* strokes of one sense only */
   FG_LOAD_CONTRADICTION = FG_LOAD_SAME_SIDE | FG_LOAD_BRANCHES_APART,
 };
 

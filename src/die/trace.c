@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "die/form_error.h"
+#include "die/levelled.h"
 #include "die/plausible.h"
 #include "foilgauge/die.h"
 #include "geometry/bump_places.h"
@@ -345,6 +346,7 @@ static fg_status take_layout(fg_context *ctx, const fg_design *design, const fg_
   fg_layout_overall(layout, design, &trace->overall);
   FG_TRY(fill_bumps(ctx, design, layout, source, trace));
   shift_circles(layout, -trace->shift_mm);
+  FG_TRY(fg_die_check_levelled(ctx, source->path, layout, trace));
   label_bumps(layout, trace);
   turn_up(trace);
   return fg_die_check_trace(ctx, design, source->path, profile, trace);

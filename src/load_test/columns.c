@@ -14,7 +14,7 @@ typedef struct unit {
   double scale;
 } unit;
 
-enum { UNITS_MAX = 8 };
+enum { UNITS_MAX = 12 }; /* and an empty one */
 
 typedef struct measured_row {
   const char *name;
@@ -27,8 +27,15 @@ static const measured_row rows[FG_LOAD_MEASURED] = {
                          {{"deg", 1}, {"°", 1}, {"rad", 180 / M_PI}},
                          "azimuth_deg or azimuth_rad"},
     [FG_LOAD_FORCE] = {"force",
-                       {{"N", 1}, {"n", 1}, {"mN", 1e-3}, {"kN", 1e3}, {"kn", 1e3}},
-                       "force_N, force_mN or force_kN"},
+                       {{"N", 1},
+                        {"n", 1},
+                        {"mN", 1e-3},
+                        {"kN", 1e3},
+                        {"kn", 1e3},
+                        {"kgf", 9.80665},
+                        {"kp", 9.80665},
+                        {"lbf", 4.4482216152605}},
+                       "force_N, force_mN, force_kN, force_kgf or force_lbf"},
     [FG_LOAD_DISPLACEMENT] =
         {"displacement",
          {{"mm", 1},
@@ -36,12 +43,23 @@ static const measured_row rows[FG_LOAD_MEASURED] = {
           {"\xc2\xb5m", 1e-3},
           {"\xce\xbcm", 1e-3},
           {"m", 1e3},
-          {"nm", 1e-6}},
-         "displacement_mm, displacement_um, displacement_nm or displacement_m"},
+          {"nm", 1e-6},
+          {"mil", 0.0254},
+          {"in", 25.4}},
+         "displacement_mm, displacement_um, displacement_nm, displacement_m, displacement_mil or "
+         "displacement_in"},
     [FG_LOAD_TIME] = {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, "time_s, time_ms or time_min"},
     [FG_LOAD_WEIGHT] = {"dead weight",
-                        {{"N", 1}, {"n", 1}, {"mN", 1e-3}, {"kN", 1e3}, {"kn", 1e3}},
-                        "dead_weight_N, dead_weight_mN or dead_weight_kN"},
+                        {{"N", 1},
+                         {"n", 1},
+                         {"mN", 1e-3},
+                         {"kN", 1e3},
+                         {"kn", 1e3},
+                         {"kgf", 9.80665},
+                         {"kp", 9.80665},
+                         {"lbf", 4.4482216152605}},
+                        "dead_weight_N, dead_weight_mN, dead_weight_kN, dead_weight_kgf or "
+                        "dead_weight_lbf"},
     [FG_LOAD_TORQUE] = {"torque",
                         {{"Nmm", 1}, {"nmm", 1}, {"Nm", 1e3}, {"nm", 1e3}, {"mNm", 1}},
                         "torque_N_mm, torque_N_m or torque_mN_m"},
@@ -89,13 +107,15 @@ static const char *unit_text(const char *name, int which, char *text, size_t siz
 static fg_status fail_unit(fg_context *ctx, const fg_table *table, const char *name,
                            const measured_row *row, const char *text) {
   bool force = row == &rows[FG_LOAD_FORCE] || row == &rows[FG_LOAD_WEIGHT];
-  bool mass = force && (!strncasecmp(text, "kg", 2) || !strcmp(text, "g"));
+  bool mass =
+      force && (!strncasecmp(text, "kg", 2) || !strncasecmp(text, "lb", 2) || !strcmp(text, "g"));
   if (!*text)
     return fg_fail(ctx, FG_ERR_DATA, "%s: the column '%s' has no unit; call it %s", table->source,
                    name, row->wanted);
   return fg_fail(ctx, FG_ERR_DATA, "%s: the column '%s': '%s' is no unit of %s%s; it must be %s",
                  table->source, name, text, row->name,
-                 mass ? " but of mass: multiply kilograms by 9.80665 for newtons" : "",
+                 mass ? " but of mass: multiply kilograms by 9.80665, pounds by 4.44822 for newtons"
+                      : "",
                  row->wanted);
 }
 

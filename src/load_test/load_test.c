@@ -65,6 +65,13 @@ const fg_load_flag *fg_load_flags(void) {
       {FG_LOAD_OUTLIERS, "outliers",
        "readings that jump away from their neighbours and back took no part: look at plug and "
        "probe"},
+      {FG_LOAD_SATURATED, "saturated",
+       "force or displacement stays at its largest reading while the other moves on, as at the end "
+       "of an instrument's range: those samples took no part, and the loops are not known"},
+      {FG_LOAD_LOOPS, "loops_on_the_way",
+       "the displacement goes back and forth on the way: those samples took no part"},
+      {FG_LOAD_ONE_SENSE, "one_sense",
+       "the strokes all run the same way: a clearance takes the strokes of both"},
       {FG_LOAD_FORCE_TURNED, "force_turned",
        "the force runs against the displacement, as a reaction does; its sign was turned"},
       {FG_LOAD_AT_END, "stiffness_at_end",
@@ -180,7 +187,14 @@ static void withhold_all(fg_load_direction *d) {
   d->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN};
 }
 
-static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
+static bool is_one_sense(const fg_load_strokes *strokes) {
+  for (size_t i = 1; i < strokes->count; i++)
+    if (strokes->stroke[i].sense != strokes->stroke[0].sense) return false;
+  return strokes->count > 1;
+}
+
+static void say_why_not(const fg_load_test *test, const fg_load_strokes *strokes,
+                        fg_load_direction *d) {
   enum {
     REASONS = FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP | FG_LOAD_WRONG_WAY | FG_LOAD_FRICTION_HIGH |
               FG_LOAD_UNSAMPLED | FG_LOAD_CONTRADICTION | FG_LOAD_GAP_UNKNOWN
@@ -197,7 +211,9 @@ static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
   else if (!push && !pull)
     d->flags |= FG_LOAD_NO_CONTACT;
   else
-    d->flags |= push && pull ? FG_LOAD_TOO_FEW : FG_LOAD_ONE_SIDE;
+    d->flags |= !(push && pull)         ? FG_LOAD_ONE_SIDE
+                : is_one_sense(strokes) ? FG_LOAD_ONE_SENSE
+                                        : FG_LOAD_TOO_FEW;
 }
 
 static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
@@ -233,7 +249,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   FG_TRY_EXIT(fg_load_find_loops(ctx, test, &strokes, &zero, d));
   FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, d));
   if (d->flags & FG_LOAD_WRONG_WAY) withhold_all(d);
-  say_why_not(test, d);
+  say_why_not(test, &strokes, d);
 exit:
   fg_load_strokes_free(&strokes);
   return status;

@@ -13,6 +13,9 @@
 /* Ends of a loop that lie nearer to each other than this share of the travel close it. */
 static const double close_share = 0.05;
 
+/* Strokes of one cycle that begins and ends in the middle. */
+enum { CYCLE_STROKES_MAX = 3 };
+
 /* Number of u by which a loop's area must be negative for the flag of released energy, U = 2 u. */
 static const double gained_reach = 2;
 
@@ -35,20 +38,24 @@ typedef struct loops {
 } loops;
 
 /* Area of the polygon of samples first ... last, closed; positive where energy is lost. */
-static double polygon(const fg_load_sample *s, size_t first, size_t last) {
+static double polygon(const fg_load_sample *s, const bool *left_out, size_t first, size_t last) {
   double area = 0, f0 = s[first].force_n;
-  for (size_t i = first; i <= last; i++) {
-    size_t next = i < last ? i + 1 : first;
-    area += ((s[i].force_n + s[next].force_n) / 2 - f0) * (s[next].x_mm - s[i].x_mm);
+  size_t before = first;
+  for (size_t i = first + 1; i <= last + 1; i++) {
+    size_t next = i <= last ? i : first;
+    if (i < last && left_out[i]) continue;
+    area += ((s[before].force_n + s[next].force_n) / 2 - f0) * (s[next].x_mm - s[before].x_mm);
+    before = next;
   }
   return area;
 }
 
 /* NaN: its ends do not meet. */
-static double loop_area(const fg_load_sample *s, const fg_load_direction *direction, size_t first,
-                        size_t last, double variance, loops *all) {
+static double loop_area(const fg_load_sample *s, const bool *left_out,
+                        const fg_load_direction *direction, size_t first, size_t last,
+                        double variance, loops *all) {
   if (fabs(s[last].x_mm - s[first].x_mm) > close_share * direction->travel_mm) return NAN;
-  double area = polygon(s, first, last), noise = 0;
+  double area = polygon(s, left_out, first, last), noise = 0;
   for (size_t i = first + 1; i < last; i++)
     noise += variance * pow((s[i + 1].x_mm - s[i - 1].x_mm) / 2, 2);
   add_area(&all->single, area);
@@ -69,20 +76,35 @@ static bool follows(const fg_load_strokes *strokes, size_t i) {
          strokes->stroke[i].record == strokes->stroke[i + 1].record;
 }
 
+static double find_widest(const fg_load_strokes *strokes) {
+  double widest = 0;
+  for (size_t i = 0; i < strokes->count; i++)
+    widest = fmax(widest, strokes->stroke[i].high_mm - strokes->stroke[i].low_mm);
+  return widest;
+}
+
+/* A loop on the way that is deep enough for strokes of its own is none of the test's. */
+static bool is_loop(const fg_load_strokes *strokes, size_t i, double widest) {
+  const fg_load_stroke *a = &strokes->stroke[i], *b = &strokes->stroke[i + 1];
+  return follows(strokes, i) &&
+         fmin(a->high_mm - a->low_mm, b->high_mm - b->low_mm) > (1 - 2 * close_share) * widest;
+}
+
 static loops find_loops(const fg_load_sample *samples, const fg_load_strokes *strokes,
                         const fg_load_direction *direction) {
   loops all = {0};
-  double variance = mean_variance(strokes), last = NAN;
+  double variance = mean_variance(strokes), last = NAN, widest = find_widest(strokes);
   for (size_t i = 0; i + 1 < strokes->count; i++) {
-    double area = follows(strokes, i) ? loop_area(samples, direction, strokes->stroke[i].first,
-                                                  strokes->stroke[i + 1].last, variance, &all)
-                                      : NAN;
+    double area = is_loop(strokes, i, widest)
+                      ? loop_area(samples, strokes->left_out, direction, strokes->stroke[i].first,
+                                  strokes->stroke[i + 1].last, variance, &all)
+                      : NAN;
     if (isfinite(area + last)) add_area(&all.pair, (area + last) / 2);
     last = area;
   }
   /* One cycle from the middle back to the middle has no turning point twice. */
-  if (!(all.single.count > 0) && strokes->count)
-    loop_area(samples, direction, strokes->stroke[0].first,
+  if (!(all.single.count > 0) && strokes->count && strokes->count <= CYCLE_STROKES_MAX)
+    loop_area(samples, strokes->left_out, direction, strokes->stroke[0].first,
               strokes->stroke[strokes->count - 1].last, variance, &all);
   return all;
 }
@@ -104,6 +126,19 @@ static double u_of_scatter(const loops *all) {
   const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
   double strokes = t->count + (all->pair.count > 0 ? 2 : 1);
   return sqrt(4 * fmax(stroke_variance(all), all->noise / 2) / strokes);
+}
+
+/* Number of u by which the mean area of single loops may differ from that of the mean loop. */
+static const double loops_apart = 3;
+
+/* The mean loop lies over strokes whose drift was subtracted. A displacement that jumps between
+ * strokes is no drift: it parts the branches, and no scatter tells. Single loops, in the order of
+ * time, contain no such correction, but lose the area of a dropout. Where both differ, either may
+ * be right. */
+static double widen_by_loops(const fg_load_value *area, const loops *all) {
+  const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
+  double apart = t->count > 0 ? fabs(t->sum / t->count - area->value) : 0;
+  return apart > loops_apart * area->u_repeat ? hypot(area->u_repeat, apart) : area->u_repeat;
 }
 
 /* ---- the mean loop ---- */
@@ -302,6 +337,7 @@ static void find_mean(const mean_loop *loop, const loops *all, const fg_load_zer
   if (!end[FG_LOAD_PULL].found || !end[FG_LOAD_PUSH].found || !(travel > 0)) return;
   d->area = area_of(loop, end);
   d->area.u_repeat = hypot(d->area.u_repeat, all->single.count > 0 ? u_of_scatter(all) : 0);
+  d->area.u_repeat = widen_by_loops(&d->area, all);
   if (d->area.value < -gained_reach * d->area.u_repeat) d->flags |= FG_LOAD_WRONG_WAY;
   double k = (end[FG_LOAD_PUSH].force_n - end[FG_LOAD_PULL].force_n) / travel;
   d->secant = (fg_load_value){k, NAN, u_of_secant(loop, k, travel)};
@@ -317,7 +353,7 @@ fg_status fg_load_find_loops(fg_context *ctx, const fg_load_test *test,
   mean_loop loop = {0};
   direction->area = direction->secant = none;
   direction->loss = direction->loss_secant = direction->loss_foil = none;
-  if (!strokes->count) return FG_OK;
+  if (!strokes->count || (direction->flags & FG_LOAD_SATURATED)) return FG_OK;
   loops all = find_loops(test->samples + direction->first, strokes, direction);
   fg_status status = make_loop(ctx, test->samples + direction->first, strokes, direction, &loop);
   if (status == FG_OK) find_mean(&loop, &all, zero, test->options.threshold_n, direction);

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "load_test/usable.h"
 
 /* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
 static const double turn_share = 0.1;
@@ -28,6 +29,7 @@ void fg_load_strokes_free(fg_load_strokes *strokes) {
   for (size_t i = 0; i < strokes->count; i++)
     fg_load_stroke_free(&strokes->stroke[i]);
   free(strokes->stroke);
+  free(strokes->left_out);
   *strokes = (fg_load_strokes){0};
 }
 
@@ -73,16 +75,31 @@ static int by_x(const void *left, const void *right) {
   return (a->order > b->order) - (a->order < b->order);
 }
 
-static fg_status fill_stroke(fg_context *ctx, const fg_load_sample *samples,
+/* Record that is being cut. */
+typedef struct cutting {
+  const fg_load_sample *samples;
+  size_t begin, end, record;
+  double depth_mm; /* of loops on the way */
+  bool found_loops;
+  fg_load_strokes *strokes;
+} cutting;
+
+static size_t count_usable(const cutting *c, const fg_load_stroke *stroke) {
+  size_t count = 0;
+  for (size_t i = stroke->first; i <= stroke->last; i++)
+    count += !c->strokes->left_out[i];
+  return count;
+}
+
+static fg_status fill_stroke(fg_context *ctx, const cutting *c, size_t count,
                              fg_load_stroke *stroke) {
   placed *sorted = NULL;
   fg_status status = FG_OK;
-  size_t count = stroke->last - stroke->first + 1;
   FG_TRY_EXIT(allocate_stroke(ctx, count, stroke));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *sorted, (void **)&sorted));
-  for (size_t i = 0; i < count; i++) {
-    const fg_load_sample *s = &samples[stroke->first + i];
-    sorted[i] = (placed){s->x_mm, s->force_n, shuffled(stroke->first + i)};
+  for (size_t i = stroke->first, n = 0; i <= stroke->last; i++) {
+    const fg_load_sample *s = &c->samples[i];
+    if (!c->strokes->left_out[i]) sorted[n++] = (placed){s->x_mm, s->force_n, shuffled(i)};
   }
   fg_sort_items(sorted, count, sizeof *sorted, by_x);
   for (size_t i = 0; i < count; i++) {
@@ -95,73 +112,65 @@ exit:
   return status;
 }
 
-static fg_status add_stroke(fg_context *ctx, const fg_load_sample *samples, fg_load_stroke stroke,
-                            fg_load_strokes *strokes) {
-  if (stroke.last < stroke.first + STROKE_SAMPLES_MIN - 1) return FG_OK;
+static fg_status add_stroke(fg_context *ctx, cutting *c, size_t first, size_t last, int sense) {
+  fg_load_strokes *strokes = c->strokes;
+  fg_load_stroke stroke = {.first = first,
+                           .last = last,
+                           .begin = c->begin,
+                           .end = c->end,
+                           .sense = sense,
+                           .record = c->record};
+  if (last <= first) return FG_OK;
+  if (fg_load_mark_loops(c->samples, first, last, sense, c->depth_mm, c->strokes->left_out))
+    c->found_loops = true;
+  size_t count = count_usable(c, &stroke);
+  if (count < STROKE_SAMPLES_MIN) return FG_OK;
   FG_TRY(fg_memory_reserve(ctx, strokes->count + 1, sizeof *strokes->stroke, &strokes->capacity,
                            (void **)&strokes->stroke));
   strokes->stroke[strokes->count++] = stroke;
-  return fill_stroke(ctx, samples, &strokes->stroke[strokes->count - 1]);
+  return fill_stroke(ctx, c, count, &strokes->stroke[strokes->count - 1]);
 }
 
 /* Cuts strokes of one record: from one extreme to the next at a distance of at least `way`. */
-static fg_status cut_record(fg_context *ctx, const fg_load_sample *samples, size_t begin,
-                            size_t end, size_t record, double way, fg_load_strokes *strokes) {
-  size_t start = begin, low = begin, high = begin;
+static fg_status cut_record(fg_context *ctx, cutting *c, double way) {
+  const fg_load_sample *samples = c->samples;
+  size_t start = c->begin, low = start, high = start;
   int sense = 0;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t i = c->begin; i < c->end; i++) {
     if (samples[i].x_mm < samples[low].x_mm) low = i;
     if (samples[i].x_mm > samples[high].x_mm) high = i;
     bool up = samples[i].x_mm - samples[low].x_mm > way;
     bool down = samples[high].x_mm - samples[i].x_mm > way;
     if (sense >= 0 && down) { /* turned at `high` */
-      if (high > start)
-        FG_TRY(add_stroke(ctx, samples,
-                          (fg_load_stroke){.first = start,
-                                           .last = high,
-                                           .begin = begin,
-                                           .end = end,
-                                           .sense = 1,
-                                           .record = record},
-                          strokes));
+      FG_TRY(add_stroke(ctx, c, start, high, 1));
       start = high, low = i, sense = -1;
     } else if (sense <= 0 && up) {
-      if (low > start)
-        FG_TRY(add_stroke(ctx, samples,
-                          (fg_load_stroke){.first = start,
-                                           .last = low,
-                                           .begin = begin,
-                                           .end = end,
-                                           .sense = -1,
-                                           .record = record},
-                          strokes));
+      FG_TRY(add_stroke(ctx, c, start, low, -1));
       start = low, high = i, sense = 1;
     }
   }
   if (!sense) return FG_OK;
-  return add_stroke(ctx, samples,
-                    (fg_load_stroke){.first = start,
-                                     .last = sense > 0 ? high : low,
-                                     .begin = begin,
-                                     .end = end,
-                                     .sense = sense,
-                                     .record = record},
-                    strokes);
+  return add_stroke(ctx, c, start, sense > 0 ? high : low, sense);
 }
 
 fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
-                              const fg_load_direction *direction, const fg_load_records *records,
+                              fg_load_direction *direction, const fg_load_records *records,
                               fg_load_strokes *strokes) {
-  const fg_load_sample *samples = test->samples + direction->first;
   size_t end = direction->first + direction->count;
+  cutting c = {.samples = test->samples + direction->first, .strokes = strokes};
   *strokes = (fg_load_strokes){0};
+  FG_TRY(fg_memory_allocate(ctx, direction->count, sizeof *strokes->left_out,
+                            (void **)&strokes->left_out));
+  fg_load_mark_saturated(test, direction, strokes->left_out);
+  FG_TRY(fg_load_find_depth(ctx, test, direction, &c.depth_mm));
   for (size_t i = 0; i < records->count; i++) {
     size_t from = records->begin[i];
     if (from < direction->first || from >= end) continue;
     size_t to = i + 1 < records->count && records->begin[i + 1] < end ? records->begin[i + 1] : end;
-    FG_TRY(cut_record(ctx, samples, from - direction->first, to - direction->first, i,
-                      turn_share * direction->travel_mm, strokes));
+    c.begin = from - direction->first, c.end = to - direction->first, c.record = i;
+    FG_TRY(cut_record(ctx, &c, turn_share * direction->travel_mm));
   }
+  if (c.found_loops) direction->flags |= FG_LOAD_LOOPS;
   return FG_OK;
 }
 

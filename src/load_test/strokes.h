@@ -26,13 +26,14 @@ typedef struct fg_load_stroke {
 typedef struct fg_load_strokes {
   fg_load_stroke *stroke;
   size_t count, capacity;
+  bool *left_out;           /* of the direction's samples: they take no part */
   double noise_n, noise_mm; /* sd of the columns; the displacement's with its step */
 } fg_load_strokes;
 
-/* Cuts the samples first ... first + count - 1 into strokes; pieces too short for one are left out.
- */
+/* Cuts the samples first ... first + count - 1 into strokes; pieces too short for one are left out,
+ * and so are samples that load_test/usable.h marks. Needs the travel and the step. */
 fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
-                              const fg_load_direction *direction, const fg_load_records *records,
+                              fg_load_direction *direction, const fg_load_records *records,
                               fg_load_strokes *strokes);
 void fg_load_strokes_free(fg_load_strokes *strokes);
 

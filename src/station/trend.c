@@ -143,9 +143,9 @@ static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quan
 }
 
 /* Judges capability; too few values have none, which is no error. */
-static void judge_trend(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
+static void judge_trend(const fg_lot_settings *settings, size_t points, fg_lot_quantity *quantity) {
   fg_context unused;
-  if (fg_lot_judge_capability(&unused, settings->confidence, quantity) != FG_OK)
+  if (fg_lot_judge_capability(&unused, settings->confidence, points, quantity) != FG_OK)
     quantity->has_capability = false;
 }
 
@@ -189,7 +189,8 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
   if (!trend->choice->taken_out) shift_chart(trend);
   if (!trend->choice->taken_out) shift_values(trend, 1);
   /* Between levels of a cause capability would be that of no state of the process. */
-  if (trend->quantity.stable && !trend->shift) judge_trend(settings, &trend->quantity);
+  if (trend->quantity.stable && !trend->shift)
+    judge_trend(settings, trend->count, &trend->quantity);
   return FG_OK;
 }
 

@@ -65,6 +65,115 @@ fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
   return FG_OK;
 }
 
+/* ---- values in groups ---- */
+
+static bool has_groups(fg_value_groups groups) {
+  for (size_t i = 0; groups.size && i < groups.count; i++)
+    if (groups.size[i] > 1) return true;
+  return false;
+}
+
+/* Sum of a group's values, less `origin` each. */
+static double sum_from(const double *values, size_t count, double origin) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += values[i] - origin;
+  return sum;
+}
+
+static fg_status split_values(fg_context *ctx, const double *values, size_t count,
+                              fg_value_groups groups, double *means, double *deviations,
+                              fg_normality *of_means, fg_normality *of_deviations) {
+  size_t known = 0, at = 0, single = 0;
+  for (size_t i = 0; i < groups.count; at += groups.size[i++]) {
+    size_t n = groups.size[i];
+    if (!n) continue;
+    double mean = values[at] + sum_from(values + at, n, values[at]) / (double)n;
+    means[known++] = mean;
+    single += n == 1;
+    /* Of n values, deviations are smaller by the share that the mean has taken. */
+    for (size_t k = at; n > 1 && k < at + n; k++)
+      deviations[k - single] = (values[k] - mean) * sqrt((double)n / (double)(n - 1));
+  }
+  FG_TRY(fg_normality_test(ctx, means, known, of_means));
+  return fg_normality_test(ctx, deviations, count - single, of_deviations);
+}
+
+fg_status fg_normality_test_groups(fg_context *ctx, const double *values, size_t count,
+                                   fg_value_groups groups, fg_normality *normality) {
+  double *means = NULL, *deviations = NULL;
+  fg_normality of_means, of_deviations;
+  fg_status status = FG_OK;
+  if (!has_groups(groups)) return fg_normality_test(ctx, values, count, normality);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, groups.count, sizeof *means, (void **)&means));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *deviations, (void **)&deviations));
+  FG_TRY_EXIT(
+      split_values(ctx, values, count, groups, means, deviations, &of_means, &of_deviations));
+  bool both = isfinite(of_means.p_value) && isfinite(of_deviations.p_value);
+  *normality = of_means.p_value < of_deviations.p_value || !isfinite(of_deviations.p_value)
+                   ? of_means
+                   : of_deviations;
+  if (both) normality->p_value = fmin(1, 2 * normality->p_value);
+exit:
+  free(means);
+  free(deviations);
+  return status;
+}
+
+/* Interval of the standard deviation of a value, and weight of the mean. */
+typedef struct spread {
+  double sd_low, sd_high; /* interval of the process's standard deviation */
+  double sd;              /* its estimate that the interval belongs to */
+  double mean_count;      /* number of independent values that would know the mean as well */
+} spread;
+
+/* Part of a variance: a mean square times its coefficient. */
+typedef struct component {
+  double value, dof;
+} component;
+
+static double add_distances(const component part[2], double probability) {
+  double sum = 0;
+  for (int i = 0; i < 2; i++)
+    if (part[i].dof > 0)
+      sum += pow((part[i].dof / fg_distribution_chi2_quantile(probability, part[i].dof) - 1) *
+                     part[i].value,
+                 2);
+  return sqrt(sum);
+}
+
+static spread grouped_spread(const fg_capability_input *input, double mean, double alpha) {
+  double between = 0, within = 0, known = 0, squares = 0, n = (double)input->count;
+  size_t at = 0;
+  for (size_t i = 0; i < input->groups.count; at += input->groups.size[i++]) {
+    double size = (double)input->groups.size[i];
+    if (!(size > 0)) continue;
+    double level = mean + sum_from(input->values + at, input->groups.size[i], mean) / size;
+    between += size * (level - mean) * (level - mean);
+    for (size_t k = at; k < at + input->groups.size[i]; k++)
+      within += (input->values[k] - level) * (input->values[k] - level);
+    known++;
+    squares += size * size;
+  }
+  double n0 = (n - squares / n) / (known - 1), b = between / (known - 1), w = within / (n - known);
+  component part[2] = {{b / n0, known - 1}, {(1 - 1 / n0) * w, n - known}};
+  double variance = part[0].value + part[1].value;
+  double level = fmax(0, b - w) / n0; /* variance of the groups' own levels */
+  return (spread){.sd_low = sqrt(variance - add_distances(part, 1 - alpha / 2)),
+                  .sd_high = sqrt(variance + add_distances(part, alpha / 2)),
+                  .sd = sqrt(variance),
+                  .mean_count = variance / (level * squares / (n * n) + w / n)};
+}
+
+static bool is_one_group(fg_value_groups groups) {
+  size_t known = 0;
+  for (size_t i = 0; i < groups.count; i++)
+    known += groups.size[i] > 0;
+  return known == 1;
+}
+
+/* ---- ratios ---- */
+
 static fg_ratio spread_ratio(double width, double sigma, double dof, double alpha) {
   fg_ratio ratio = {NAN, NAN, NAN};
   if (!isfinite(width) || !(sigma > 0)) return ratio;
@@ -83,6 +192,22 @@ static fg_ratio room_ratio(double distance, double sigma, double count, double d
   ratio.low = ratio.value - reach;
   ratio.high = ratio.value + reach;
   return ratio;
+}
+
+/* Pp and Ppk of values in groups: the ratio stays that of all values, its interval is that of the
+ * groups. */
+static void apply_groups(const spread *s, double width, double distance, double alpha,
+                         fg_capability *capability) {
+  double z = fg_distribution_normal_quantile(1 - alpha / 2), k = distance / (3 * s->sd);
+  double mean = z / (3 * sqrt(s->mean_count));
+  double low = distance / 3 / (distance > 0 ? s->sd_high : s->sd_low);
+  double high = distance / 3 / (distance > 0 ? s->sd_low : s->sd_high);
+  capability->p = (fg_ratio){NAN, NAN, NAN};
+  if (isfinite(width))
+    capability->p =
+        (fg_ratio){width / (6 * capability->sd), width / (6 * s->sd_high), width / (6 * s->sd_low)};
+  capability->pk = (fg_ratio){distance / (3 * capability->sd), k - hypot(mean, k - low),
+                              k + hypot(mean, high - k)};
 }
 
 static void apply_quantiles(const fg_capability_input *input, fg_capability *capability) {
@@ -116,11 +241,20 @@ fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *inpu
   double distance = fg_margin_to(input->lower, input->upper, capability->mean).inside;
   capability->p = spread_ratio(width, capability->sd, n - 1, alpha);
   capability->pk = room_ratio(distance, capability->sd, n, n - 1, alpha);
+  if (has_groups(input->groups) && is_one_group(input->groups)) {
+    /* One group does not tell how groups differ. */
+    capability->p.low = capability->p.high = capability->pk.low = capability->pk.high = NAN;
+  } else if (has_groups(input->groups)) {
+    spread s = grouped_spread(input, capability->mean, alpha);
+    apply_groups(&s, width, distance, alpha, capability);
+    n = fmin(n, s.mean_count);
+  }
   if (input->stable && input->sigma > 0) {
     capability->c = spread_ratio(width, input->sigma, input->sigma_dof, alpha);
     capability->ck = room_ratio(distance, input->sigma, n, input->sigma_dof, alpha);
   }
-  FG_TRY(fg_normality_test(ctx, input->values, input->count, &capability->normality));
+  FG_TRY(fg_normality_test_groups(ctx, input->values, input->count, input->groups,
+                                  &capability->normality));
   capability->normal = !(capability->normality.p_value < 0.05);
   if (input->density) apply_quantiles(input, capability);
   return FG_OK;

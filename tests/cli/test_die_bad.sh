@@ -57,6 +57,16 @@ awk '{print NR "\t" $1 "\t" $2}' good.txt >three.txt
 refuse "line 1: 3 columns, and no heading says which is x" three.txt $say
 refuse "line 1: no column 4" three.txt $say --columns 2,4
 
+# Levelling subtracts a line, which shears the die: radii of -2.4 to +2.5 % came with U of 0.4 %. A tilt is a rotation.
+for slope in 0.0021 -0.0175; do
+  awk -v q=$slope '{printf "%s\t%.6f\n", $1, $2 - q * $1}' good.txt >levelled.txt
+  refuse "lands and bumps are sheared as if a line of [01].* degrees was subtracted" levelled.txt $say
+done
+awk '{a = 0.02; printf "%.6f\t%.6f\n", $1 * cos(a) - $2 * sin(a), $1 * sin(a) + $2 * cos(a)}' good.txt >tilted.txt
+expect 0 "" "$program" die $say tilted.txt -o tilted.json
+near "the radius of a tilted trace" "$(value tilted.json 'r["die"]["mean"]["radius_mm"]')" \
+  "$(value good.json 'r["die"]["mean"]["radius_mm"]')" 0.0004
+
 # Units are never guessed.
 refuse "the header does not say the unit of x; say --unit" good.txt --half concave --tip-um 2
 refuse "in um the trace is .* mm long.*in mm it would be" good.txt --half concave --tip-um 2 --unit um

@@ -46,6 +46,41 @@ static fg_lot_quantity radius_of(const char *const *cells, const double *offset_
   return radius; /* of it only numbers are read */
 }
 
+/* Interval of Ppk where every three scans are of one foil, whose cells name it or are empty. */
+static fg_ratio ppk_of_scans(bool named) {
+  static const char *const names[] = {",a,", ",b,", ",c,", ",d,", ",e,", ",f,", ",g,", ",h,"};
+  const char *cells[FOILS];
+  double offset[FOILS];
+  fg_design design;
+  fg_lot_analysis analysis;
+  fg_design_default(&design);
+  design.bumps.count = BUMPS;
+  design.tolerance_count = 1;
+  strcpy(design.calibration.not_needed, "the foils are made up");
+  design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.5};
+  for (size_t i = 0; i < FOILS; i++) {
+    cells[i] = named ? names[i / 3] : ",,";
+    offset[i] = 0.02 * (double)(i / 3 % 3);
+  }
+  fg_lot lot = made_lot(&design, FOILS, BUMPS, ",foil,operator", cells);
+  for (size_t i = 0; i < FOILS; i++)
+    for (size_t k = 0; k < BUMPS; k++)
+      made_bump(&lot, i, k, 3.36 + offset[i] + 0.002 * (double)k, 63);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
+  fg_ratio ppk = fg_lot_find_quantity(&analysis, "radius_mm")->capability.pk;
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+  return ppk;
+}
+
+/* 24 scans of 8 foils say no more of the process than 8 do. */
+static void scans_of_a_foil_count_once(void **state) {
+  (void)state;
+  fg_ratio named = ppk_of_scans(true), apart = ppk_of_scans(false);
+  assert_near(named.value, apart.value, 1e-12);
+  assert_in_range(100 * (named.high - named.low) / (apart.high - apart.low), 150, 230);
+}
+
 /* Two dies in turn, 60 µm apart: the chart signals, and the die is why; who measured is not. */
 static void dies_in_turn_explain_the_signals(void **state) {
   (void)state;
@@ -209,6 +244,7 @@ static void the_margin_of_the_worst_is_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(scans_of_a_foil_count_once),
       cmocka_unit_test(dies_in_turn_explain_the_signals),
       cmocka_unit_test(a_drift_is_a_trend),
       cmocka_unit_test(a_single_outlier_and_a_new_die_are_no_trend),

@@ -235,6 +235,65 @@ static void capability_needs_stability(void **state) {
   assert_status(&ctx, fg_capability_compute(&ctx, &input, &result), FG_ERR_USAGE);
 }
 
+/* 400 lots of 12 groups of 9 values, whose groups have levels of their own: the intervals of Pp and
+ * Ppk hold the truth in 95 %, and normal values are called normal in 95 %. */
+static void capability_counts_groups(void **state) {
+  (void)state;
+  enum { LOTS = 400, GROUPS = 12, SIZE = 9, COUNT = GROUPS * SIZE };
+  fg_context ctx;
+  uint64_t seed = 12;
+  double within = 0.3, sigma = hypot(1, within), limit = 4 * sigma, mean = 0.3 * limit;
+  size_t size[GROUPS + 1], p = 0, pk = 0, normal = 0;
+  double values[COUNT];
+  for (size_t i = 0; i <= GROUPS; i++)
+    size[i] = i == 3 ? 0 : SIZE;
+  for (int lot = 0; lot < LOTS; lot++) {
+    for (size_t i = 0; i < GROUPS; i++) {
+      double level = mean + random_gaussian(&seed);
+      for (size_t k = 0; k < SIZE; k++)
+        values[i * SIZE + k] = level + within * random_gaussian(&seed);
+    }
+    const fg_capability_input input = {.values = values,
+                                       .count = COUNT,
+                                       .groups = {size, GROUPS + 1},
+                                       .lower = -limit,
+                                       .upper = limit,
+                                       .sigma = NAN};
+    fg_capability c;
+    assert_ok(&ctx, fg_capability_compute(&ctx, &input, &c));
+    double true_pk = (limit - mean) / (3 * sigma);
+    p += c.p.low <= limit / (3 * sigma) && limit / (3 * sigma) <= c.p.high;
+    pk += c.pk.low <= true_pk && true_pk <= c.pk.high;
+    normal += c.normal;
+  }
+  assert_in_range(p, 0.92 * LOTS, 0.98 * LOTS);
+  assert_in_range(pk, 0.92 * LOTS, 0.98 * LOTS);
+  assert_in_range(normal, 0.92 * LOTS, LOTS);
+}
+
+/* Groups of one value are independent values. */
+static void capability_of_groups_of_one(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_capability alone, grouped;
+  size_t size[NX];
+  for (size_t i = 0; i < NX; i++)
+    size[i] = 1;
+  fg_capability_input input = {
+      .values = x, .count = NX, .lower = -1, .upper = 30, .sigma = 1, .sigma_dof = 14};
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &alone));
+  input.groups = (fg_value_groups){size, NX};
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &grouped));
+  assert_near(grouped.p.low, alone.p.low, 0);
+  assert_near(grouped.pk.high, alone.pk.high, 0);
+  assert_near(grouped.normality.a2, alone.normality.a2, 0);
+  size[0] = NX; /* one group of all: how groups differ is not known */
+  input.groups = (fg_value_groups){size, 1};
+  assert_ok(&ctx, fg_capability_compute(&ctx, &input, &grouped));
+  assert_near(grouped.p.value, alone.p.value, 0);
+  assert_true(isnan(grouped.p.low) && isnan(grouped.pk.high));
+}
+
 /* The quantile method on a density that is nearly one normal kernel agrees with the other. */
 static void quantiles_agree_where_normal(void **state) {
   (void)state;
@@ -351,6 +410,8 @@ int main(void) {
       cmocka_unit_test(limits_follow_the_subgroups),
       cmocka_unit_test(piston_rings),
       cmocka_unit_test(capability_needs_stability),
+      cmocka_unit_test(capability_counts_groups),
+      cmocka_unit_test(capability_of_groups_of_one),
       cmocka_unit_test(quantiles_agree_where_normal),
       cmocka_unit_test(anderson_darling_is_r_s),
       cmocka_unit_test(comparison_is_r_s),

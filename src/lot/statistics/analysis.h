@@ -402,7 +402,8 @@ fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);
  * it has a tolerance and a chart, also its capability, which needs `sd`. */
 fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                                 fg_lot_quantity *quantity);
-fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity);
+fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, size_t foils,
+                                  fg_lot_quantity *quantity);
 /* Finds causes of the charts' signals, and the state of the process as a whole. */
 fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_analyse_dies(fg_lot_analysis *analysis);

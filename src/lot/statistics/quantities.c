@@ -204,10 +204,19 @@ static double process_sigma(const fg_lot_quantity *quantity) {
   return sqrt(fmax(between, 0) + within);
 }
 
-fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity) {
+/* Foil that every scan's foil is, by foil of the analysis. */
+typedef struct lot_owners {
+  fg_lot_analysis *analysis;
+  size_t *owner;
+} lot_owners;
+
+/* `values` are those of the quantity, in groups that belong together. */
+static fg_status judge_groups(fg_context *ctx, double confidence, const double *values,
+                              fg_value_groups groups, fg_lot_quantity *quantity) {
   if (!quantity->tolerance || !quantity->has_chart || !(quantity->sd > 0)) return FG_OK;
-  const fg_capability_input input = {.values = quantity->value,
+  const fg_capability_input input = {.values = values,
                                      .count = quantity->count,
+                                     .groups = groups,
                                      .lower = quantity->tolerance->lower,
                                      .upper = quantity->tolerance->upper,
                                      .sigma = process_sigma(quantity),
@@ -220,19 +229,58 @@ fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_qua
   return fg_capability_compute(ctx, &input, &quantity->capability);
 }
 
+fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, size_t foils,
+                                  fg_lot_quantity *quantity) {
+  return judge_groups(ctx, confidence, quantity->value, (fg_value_groups){quantity->size, foils},
+                      quantity);
+}
+
+/* Scans of one foil (column `foil`) are one group: the foil was made once. */
+static fg_status judge_foils(fg_context *ctx, const lot_owners *of, fg_lot_quantity *quantity) {
+  size_t foils = of->analysis->foil_count, *size = NULL, *next = NULL, at = 0;
+  double *values = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *size, (void **)&size));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *next, (void **)&next));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, quantity->count, sizeof *values, (void **)&values));
+  for (size_t i = 0; i < foils; i++)
+    size[of->owner[i]] += quantity->size[i];
+  for (size_t i = 0; i < foils; at += size[i++])
+    next[i] = at;
+  at = 0;
+  for (size_t i = 0; i < foils; at += quantity->size[i++])
+    for (size_t k = 0; k < quantity->size[i]; k++)
+      values[next[of->owner[i]]++] = quantity->value[at + k];
+  FG_TRY_EXIT(judge_groups(ctx, of->analysis->lot->settings.confidence, values,
+                           (fg_value_groups){size, foils}, quantity));
+exit:
+  free(size);
+  free(next);
+  free(values);
+  return status;
+}
+
 static fg_status analyse_quantity(fg_context *ctx, void *shared, size_t i) {
-  fg_lot_analysis *analysis = shared;
+  const lot_owners *of = shared;
+  fg_lot_analysis *analysis = of->analysis;
   const fg_lot_settings *settings = &analysis->lot->settings;
   fg_lot_quantity *quantity = &analysis->quantities[i];
   FG_TRY(collect_values(ctx, analysis, quantity));
   FG_TRY(describe_values(ctx, settings, quantity));
   FG_TRY(describe_places(ctx, analysis, quantity));
   FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, analysis->foil_count, quantity));
-  return fg_lot_judge_capability(ctx, settings->confidence, quantity);
+  return judge_foils(ctx, of, quantity);
 }
 
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
-  FG_TRY(list_quantities(ctx, analysis));
-  return fg_parallel_run(ctx, analysis->lot->threads, analysis->quantity_count, analyse_quantity,
-                         analysis);
+  lot_owners of = {.analysis = analysis};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(list_quantities(ctx, analysis));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof *of.owner, (void **)&of.owner));
+  FG_TRY_EXIT(fg_lot_find_owners(ctx, analysis, of.owner));
+  FG_TRY_EXIT(fg_parallel_run(ctx, analysis->lot->threads, analysis->quantity_count,
+                              analyse_quantity, &of));
+exit:
+  free(of.owner);
+  return status;
 }

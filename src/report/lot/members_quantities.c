@@ -118,7 +118,9 @@ static const fg_member capability_rows[] = {
     {FG_FLAG("normal", fg_lot_quantity, capability.normal),
      .words = "the test of normality does not reject it; else the quantile method holds"},
     {FG_NUMBER("anderson_darling", fg_lot_quantity, capability.normality.a2),
-     .words = "test of normality, adjusted for the count"},
+     .words =
+         "test of normality, of the foils' means or of the bumps' distances from them, whichever "
+         "rejects more; adjusted for the count"},
     {FG_NUMBER("normality_p_value", fg_lot_quantity, capability.normality.p_value),
      .words = "null: fewer than 8 values"},
     RATIO("pp", p, "Pp", show_pp, "tolerance over 6 s of all values; null: a limit is missing"),
