@@ -38,7 +38,8 @@ awk -F, -v OFS=, 'NR > 1 { sub(/\./, ",", $3); $3 = "\"" $3 "\"" } { print }' po
 sed '4s/,\([0-9]*\)\(\r\)$/.\1\2/' comma.csv >mixed.csv
 awk -F, -v OFS=, 'NR == 4 { $3 = "damp" } { print }' point.csv >damp.csv
 awk -F, -v OFS=, 'NR == 4 { $3 = "NA" } { print }' point.csv >missing.csv
-awk -F, -v OFS=, '{ $3 = NR == 1 ? "shelf" : NR % 4 ? NR % 4 : "S" } { print }' point.csv >shelf.csv
+awk -F, -v OFS=, 'BEGIN { srand(9) }
+  { $3 = NR == 1 ? "shelf" : NR % 4 ? NR % 4 : "S"; if (NR > 1) $4 = 3 + $2 / 100 + (rand() + rand() - 1) * 0.1 } { print }' point.csv >shelf.csv
 while IFS='|' read -r code words data model; do
   for tool in "doe $data" "loop --table $data"; do
     expect "$code" "$words" "$program" $tool --response y --model "$model" -o out.json
