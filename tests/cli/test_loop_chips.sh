@@ -17,8 +17,8 @@ SPEC
 [ "$(value tilted.out "[c['id'] for c in r['claims'] if c['verdict'] == 'found'], r['unattributed']['moves']")" = "([], 'y')" ] ||
   fail "tilted chips are $(value tilted.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
 
-# The same under pins of known diameters: what is left of such chips makes a correction that fits their edges and not
-# their sizes, which is refused.
+# The same under pins of known diameters: the correction for such chips fits their edges and not their sizes, and is
+# refused.
 sed 's/"amplitude_um": 12/"amplitude_um": 24/' tilted.json >more.json
 cat >pins.json <<'DESIGN'
 {"schema": "foilgauge/design/1", "name": "pins", "form": "discs", "diameters_mm": [2, 3, 4, 4.5, 5, 5, 5.5, 6, 6]}
