@@ -22,19 +22,17 @@ typedef struct measured_row {
   const char *wanted;
 } measured_row;
 
+#define FORCE_UNITS                                                                                \
+  {"N", 1}, {"n", 1}, {"mN", 1e-3}, {"kN", 1e3}, {"kn", 1e3}, {"kgf", 9.80665}, {"kp", 9.80665}, { \
+    "lbf", 4.4482216152605                                                                         \
+  }
+
 static const measured_row rows[FG_LOAD_MEASURED] = {
     [FG_LOAD_AZIMUTH] = {"azimuth",
                          {{"deg", 1}, {"°", 1}, {"rad", 180 / M_PI}},
                          "azimuth_deg or azimuth_rad"},
     [FG_LOAD_FORCE] = {"force",
-                       {{"N", 1},
-                        {"n", 1},
-                        {"mN", 1e-3},
-                        {"kN", 1e3},
-                        {"kn", 1e3},
-                        {"kgf", 9.80665},
-                        {"kp", 9.80665},
-                        {"lbf", 4.4482216152605}},
+                       {FORCE_UNITS},
                        "force_N, force_mN, force_kN, force_kgf or force_lbf"},
     [FG_LOAD_DISPLACEMENT] =
         {"displacement",
@@ -50,14 +48,7 @@ static const measured_row rows[FG_LOAD_MEASURED] = {
          "displacement_in"},
     [FG_LOAD_TIME] = {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, "time_s, time_ms or time_min"},
     [FG_LOAD_WEIGHT] = {"dead weight",
-                        {{"N", 1},
-                         {"n", 1},
-                         {"mN", 1e-3},
-                         {"kN", 1e3},
-                         {"kn", 1e3},
-                         {"kgf", 9.80665},
-                         {"kp", 9.80665},
-                         {"lbf", 4.4482216152605}},
+                        {FORCE_UNITS},
                         "dead_weight_N, dead_weight_mN, dead_weight_kN, dead_weight_kgf or "
                         "dead_weight_lbf"},
     [FG_LOAD_TORQUE] = {"torque",

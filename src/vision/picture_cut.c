@@ -34,6 +34,8 @@ typedef struct cut_profile {
   double px[PLACES]; /* places of the shares, outwards */
   bool open[2];      /* background and material may be cut */
   int first, last;   /* places in use */
+  double width_px;   /* of these */
+  double blurs;      /* the same of an uncut edge, over its blur */
 } cut_profile;
 
 /* One pair of cuts: its misfit to the profile, and its place of half the light. */
@@ -91,19 +93,15 @@ static bool make_cut_profile(const fg_edge_profile *profiles, size_t count,
   profile->open[1] = (bright > 0 ? high : low) || !(low || high);
   profile->first = profile->open[0] ? 0 : TAIL_PLACES;
   profile->last = PLACES - 1 - (profile->open[1] ? 0 : TAIL_PLACES);
+  profile->width_px = fabs(profile->px[profile->last] - profile->px[profile->first]);
+  profile->blurs = gsl_cdf_ugaussian_Pinv(share_at(profile->last)) -
+                   gsl_cdf_ugaussian_Pinv(share_at(profile->first));
   return true;
-}
-
-/* Returns the width of the places in use, and that of an uncut edge between the same shares. */
-static double width_of(const cut_profile *profile, double *blurs) {
-  *blurs = gsl_cdf_ugaussian_Pinv(share_at(profile->last)) -
-           gsl_cdf_ugaussian_Pinv(share_at(profile->first));
-  return fabs(profile->px[profile->last] - profile->px[profile->first]);
 }
 
 /* Regression of the places on the quantiles of their light. */
 static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
-  double z[PLACES], mean_z = 0, mean_x = 0, zz = 0, zx = 0, misfit = 0, blurs;
+  double z[PLACES], mean_z = 0, mean_x = 0, zz = 0, zx = 0, misfit = 0;
   double n = profile->last + 1 - profile->first;
   for (int p = profile->first; p <= profile->last; p++) {
     z[p] = gsl_cdf_ugaussian_Pinv(a + (1 - a - b) * share_at(p));
@@ -119,7 +117,7 @@ static cut_fit fit_cuts(const cut_profile *profile, double a, double b) {
     double miss = profile->px[p] - mean_x - slope * (z[p] - mean_z);
     misfit += miss * miss / n;
   }
-  double seen = width_of(profile, &blurs) / blurs;
+  double seen = profile->width_px / profile->blurs;
   double blur = fmax(fmin(fabs(slope), BLURS_MAX * seen), FG_HIDDEN_BLUR_PX);
   return (cut_fit){sqrt(misfit), blur * fabs(gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * (a - b)))};
 }
@@ -148,9 +146,8 @@ void fg_picture_inspect_cut(const fg_edge_profile *profiles, size_t count, doubl
   /* Without a usable profile half of the scale or more may be cut. */
   double shift = FG_HIDDEN_BLUR_PX * gsl_cdf_ugaussian_Pinv(1 - VISIBLE_MIN / 2);
   if (make_cut_profile(profiles, count, state, &profile)) {
-    double blurs, width = width_of(&profile, &blurs);
     largest_shift(&profile, 0, &best);
-    shift = largest_shift(&profile, best + MISFIT_SHARE * width, &best);
+    shift = largest_shift(&profile, best + MISFIT_SHARE * profile.width_px, &best);
   }
   state->u_cut = SD_OF_LARGEST * shift / per_level;
 }

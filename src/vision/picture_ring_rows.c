@@ -69,11 +69,14 @@ static void list_stations(const fg_disc_work *work, const fg_disc_edge *edge, bo
   for (size_t i = 0; i < edge->count; i++) {
     const fg_disc_station *station = &edge->stations[i];
     double angle = fg_ring_angle(&work->ring, i), rho = (double)station->edge_px;
+    double x = cos(angle), y = sin(angle), sine = swapped ? x : y;
     if (!(station->weight > 0) || !isfinite(rho)) continue;
-    ring_row *row = &s->rows[s->count++];
-    *row = (ring_row){.cosine = cos(angle), .sine = sin(angle), .rho = rho, .turn = i};
-    if (swapped) *row = (ring_row){.cosine = row->sine, .sine = row->cosine, .rho = rho, .turn = i};
-    row->y = (swapped ? circle->x : circle->y) + (circle->radius + rho) * row->sine;
+    s->rows[s->count++] =
+        (ring_row){.y = (swapped ? circle->x : circle->y) + (circle->radius + rho) * sine,
+                   .cosine = swapped ? y : x,
+                   .sine = sine,
+                   .rho = rho,
+                   .turn = i};
   }
 }
 
@@ -314,11 +317,11 @@ static double find_rest(ring_search *s) {
   return variance_of(s);
 }
 
-/* Returns true when jumps, and not deviations of the part from roundness, explain the edge. */
-static bool is_explained(ring_search *s) {
-  double own = find_rest(s);
+/* Returns true when jumps, which leave `rest`, and not deviations of the part from roundness
+ * explain the edge. */
+static bool is_explained(ring_search *s, double rest) {
   add_harmonics(s, RIVAL);
-  return own < RIVAL_SHARE * variance_of(s);
+  return rest < RIVAL_SHARE * variance_of(s);
 }
 
 static void count_jumps(const ring_search *s, double px_per_row, fg_picture_state *state) {
@@ -375,8 +378,9 @@ fg_status fg_picture_inspect_ring_rows(fg_context *ctx, const fg_disc_work *work
   bool seams = false;
   fg_status status = FG_OK;
   FG_TRY_EXIT(search_jumps(ctx, work, edge, false, &s));
-  if (!s.jump_count || !is_explained(&s)) goto exit;
-  FG_TRY_EXIT(find_seams(ctx, work, edge, find_rest(&s), &seams));
+  double rest = s.jump_count ? find_rest(&s) : NAN;
+  if (!s.jump_count || !is_explained(&s, rest)) goto exit;
+  FG_TRY_EXIT(find_seams(ctx, work, edge, rest, &seams));
   if (!seams) count_jumps(&s, work->shape->scale[1], state);
 exit:
   close_search(&s);
