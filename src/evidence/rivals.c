@@ -250,6 +250,11 @@ static size_t two_columns(const fg_edge_fit *edge_fit) {
   return 2;
 }
 
+/* All discs oval in one way, or with lobes: on foils that is a harmonic of the ring. */
+static size_t two_columns_of_discs(const fg_edge_fit *edge_fit) {
+  return edge_fit->discs ? 2 : 0;
+}
+
 bool fg_rival_shows(const fg_rival *rival, const fg_edge_fit *edge_fit) {
   return !edge_fit->discs || rival->glass || rival->coordinate == FG_EFFECT_NORMAL ||
          rival->coordinate == FG_EFFECT_COORDINATES;
@@ -362,6 +367,12 @@ const fg_rival fg_rivals[] = {
      .coordinate = FG_EFFECT_NORMAL,
      .columns = over_direction,
      .variances = direction_variances},
+    {.name = "edge.normal of one harmonic",
+     .coordinate = FG_EFFECT_NORMAL,
+     .columns = over_direction,
+     .variances = alike_variances,
+     .stretch = two_columns_of_discs,
+     .of_last = true},
     {.name = "disc.form of one disc",
      .coordinate = FG_EFFECT_COORDINATES, /* no curve: it is the disc's own */
      .columns = over_disc,

@@ -417,11 +417,18 @@ static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
+/* A form that discs have alike is scatter to every model that lacks it: its own is what shows how
+ * well it does. */
+static bool explains_scatter(const fg_evidence_search *s, const fg_evidence_model *model) {
+  return s->problem.edge_fit->discs && model->parts == 1 && model->part[0]->rival;
+}
+
 /* Fits the likeliest models together, and finds the scatter of the bumps beside them. */
 static fg_status refit_models(fg_context *ctx, fg_evidence_search *s) {
   double top = s->models[0].score;
-  for (size_t m = 0; m < s->count && m < SCATTERED; m++) {
+  for (size_t m = 0; m < s->count; m++) {
     fg_evidence_model *model = &s->models[m];
+    if (m >= SCATTERED && !explains_scatter(s, model)) continue;
     if (m < REFITTED && model->parts > 1 && model->score > top - REACH)
       FG_TRY(fg_evidence_refit_model(ctx, s, model));
     FG_TRY(find_scatter(ctx, s, model));

@@ -12,6 +12,7 @@ enum { STARTS = 24, PERIODS = 48, BROKEN_NUMBERS = 3 };
 /* A wave of changing size is wider in frequency than one cycle over the picture. */
 enum { BAND_PERIODS = 24, ENVELOPE = 3, BAND_NUMBERS = 2 * ENVELOPE };
 enum { JOINTS = 40, EVENT_LENGTHS = 3, EVENT_PLACES = 24, EVENT_NUMBERS = 3, JOINT_NUMBERS = 2 };
+enum { BURR_WIDTHS = 2, BURR_PLACES = 288, BURR_DISCS_MAX = 20 };
 
 static double start_along(const fg_field_frame *frame, int axis, size_t i, size_t count) {
   double low = frame->low_mm[axis], high = frame->high_mm[axis];
@@ -185,6 +186,29 @@ static size_t joint_of_foil(const fg_edge_fit *edge_fit, const fg_edge_fit_row *
   return JOINT_NUMBERS;
 }
 
+/* ---- a burr or a flat of one disc: its place in turns, from the first disc on, and its standard
+ * deviation in degrees ---- */
+
+static void burr_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
+                      double *reach) {
+  static const double widths[BURR_WIDTHS] = {7, 20};
+  double places = (double)count / BURR_WIDTHS;
+  double step = (double)edge_fit->part_count / places;
+  shape[0] = step * ((double)(i / BURR_WIDTHS) + 0.5);
+  shape[1] = widths[i % BURR_WIDTHS];
+  reach[0] = step;
+  reach[1] = 0.5 * shape[1];
+}
+
+static size_t burr_of_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *row,
+                           const double *shape, double *values) {
+  double disc = floor(shape[0]), turn = 0.5 * row->phi + 0.5 - (shape[0] - disc);
+  double u = 360 * remainder(turn, 1) / shape[1];
+  (void)edge_fit;
+  values[0] = disc == (double)row->part ? exp(-0.5 * u * u) : 0;
+  return 1;
+}
+
 #define BAND_ROW(name, over, thing, basis, from)                                                   \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
@@ -258,6 +282,18 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
      .jumps = true,
      .size_um = {15},
      .size_from = "as of a dent; assumed"},
+    {.id = "disc.form at one place",
+     .sought = FG_EFFECT_PLACED,
+     .coordinate = FG_EFFECT_COORDINATES, /* no curve: it is the disc's own */
+     .moves = "along the normal",
+     .columns = 1,
+     .shapes = 2,
+     .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_LENGTH},
+     .midline = burr_of_disc,
+     .grid = burr_grid,
+     .starts = BURR_WIDTHS * BURR_PLACES,
+     .size_um = {15},
+     .size_from = "as of a dent; assumed"},
     {.id = NULL},
 };
 
@@ -268,6 +304,8 @@ static bool is_broken_across(const fg_effect *effect) {
 }
 
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
+  if (effect->midline == burr_of_disc)
+    return edge_fit->discs && edge_fit->part_count <= BURR_DISCS_MAX;
   if (!edge_fit->discs) return true;
   return effect->jumps ? is_broken_across(effect) : effect->columns != BAND_NUMBERS;
 }

@@ -5,7 +5,8 @@
  * sets of named effects explain them on one arc, and are no evidence for their names. A decay of
  * x, or a wave of it, is as likely as the carriage's start and its ripple, which have names. A wave
  * whose size changes is three waves of one size to them, a stop that settles steps with dents
- * beside them: sets of pieces, for one cause. */
+ * beside them: sets of pieces, for one cause. A burr of one disc is lost rows and seams that cross
+ * it alone. */
 #ifndef FG_EVIDENCE_UNNAMED_H
 #define FG_EVIDENCE_UNNAMED_H
 
@@ -13,7 +14,7 @@
 
 /* The rows, in the form of effects, which no report names; NULL-terminated by id. They are of one
  * kind and share one prior probability. */
-enum { FG_UNNAMED_EFFECTS = 17 };
+enum { FG_UNNAMED_EFFECTS = 18 };
 extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
 
 /* Returns false on discs for lines that are broken along their own way: there a slope and a jump
