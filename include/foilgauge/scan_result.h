@@ -270,11 +270,12 @@ typedef struct fg_scan_result {
   fg_loop_outcome verdict;
   bool same_foil, discs;
   const char *without; /* effects that were not looked for; NULL: none */
-  bool tied;       /* several explanations */
-  bool named;      /* the effects are named: explanations differ at most in a basis */
+  bool tied;           /* several explanations */
+  bool named;          /* the effects are named: explanations differ at most in a basis */
   bool scale_tied; /* a scale that the edges cannot see would explain the part's stretch as well */
-  bool corrected;  /* effects of the rows are claimed: before and after differ */
-  bool of_width;   /* effects of the width are claimed */
+  bool uneven_discs; /* nothing is claimed, and discs deviate from circles by more than noise */
+  bool corrected;    /* effects of the rows are claimed: before and after differ */
+  bool of_width;     /* effects of the width are claimed */
   bool contradicted; /* the error of held-out scans increased */
   double noise_floor_um, edge_model_error_um;
   fg_scan_noise noise;

@@ -417,8 +417,8 @@ static fg_status shorten_models(fg_context *ctx, fg_evidence_search *s) {
   return FG_OK;
 }
 
-/* A form that discs have alike is scatter to every model that lacks it: its own is what shows how
- * well it does. */
+/* A form that discs have alike is scatter to every model that lacks it: a model with it is scored
+ * by the scatter it leaves. */
 static bool explains_scatter(const fg_evidence_search *s, const fg_evidence_model *model) {
   return s->problem.edge_fit->discs && model->parts == 1 && model->part[0]->rival;
 }

@@ -43,3 +43,10 @@ fg_loop_outcome fg_scan_loop_outcome(const fg_scan_loop *loop) {
          : outcome == FG_LOOP_UNATTRIBUTED ? FG_LOOP_PARTLY
                                            : outcome;
 }
+
+/* Probability of chance. */
+#define FORMING_P 1e-4
+
+bool fg_scan_loop_has_uneven_discs(const fg_scan_loop *loop) {
+  return loop->edge_fit.discs && !loop->set.count && loop->explanations.p_value < FORMING_P;
+}

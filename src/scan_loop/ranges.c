@@ -120,7 +120,8 @@ static fg_status fit_explanation(fg_context *ctx, void *shared, size_t item) {
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
-/* Extends the ranges by one explanation other than the winner. */
+/* Extends the ranges by one explanation other than the winner; by none that leaves no circle of a
+ * part. */
 static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                           const fg_joint_fit_result *fit, fg_measurement *tried) {
   if (!fit->edge_fit) return FG_OK;
@@ -132,7 +133,9 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
     status = fg_scan_loop_take_moves(ctx, loop, explanation, fit, tried);
   for (size_t i = 0; i < loop->scan_count; i++)
     fg_measurement_free(&tried[i]);
-  return status;
+  if (status != FG_ERR_NUMERIC) return status;
+  loop->tie_count--;
+  return FG_OK;
 }
 
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop) {

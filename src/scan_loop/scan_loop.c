@@ -133,10 +133,9 @@ static fg_status note_reach(fg_context *ctx, fg_scan_loop *loop) {
 }
 
 /* Notes form errors of single discs: they are no effect of the scanner, but significant. */
-#define FORMING_P 1e-4
 static fg_status note_forming(fg_context *ctx, fg_scan_loop *loop) {
   const fg_explanations *explanations = &loop->explanations;
-  if (loop->set.count || !(explanations->p_value < FORMING_P)) return FG_OK;
+  if (!fg_scan_loop_has_uneven_discs(loop)) return FG_OK;
   return fg_scan_loop_bumps_note(
       ctx, &loop->bumps,
       "points: the discs deviate from circles by %.2g um rms, more than noise (p = %.1g), and no "
@@ -288,7 +287,22 @@ static fg_status calibrate(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
+enum { LEVELLED_MAX = 3 };
 static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result);
+
+/* Moves the edges from where they are; `picture` keeps the whole way. */
+static fg_status move_to_level(fg_context *ctx, const fg_level *level, unsigned threads,
+                               fg_measurement *m) {
+  double *moved = NULL;
+  FG_TRY(fg_memory_allocate(ctx, m->disc_count, sizeof *moved, (void **)&moved));
+  for (size_t d = 0; d < m->disc_count; d++)
+    moved[d] = m->discs[d].picture.level_known ? m->discs[d].picture.level : 0;
+  fg_status status = fg_level_apply(ctx, level, threads, m);
+  for (size_t d = 0; status == FG_OK && d < m->disc_count; d++)
+    if (m->discs[d].picture.level_known) m->discs[d].picture.level += moved[d];
+  free(moved);
+  return status;
+}
 
 /* Repeats the loop with the edges moved to the level that the known diameters show: a level common
  * to all discs looks like a scale that falls with their size. Where an effect moves them, too, it
@@ -299,14 +313,20 @@ static fg_status level_again(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop *
   FG_TRY_EXIT(create_loop(ctx, loop->hold_out, loop->scan_count, &loop->options, &next));
   memcpy(next->before, loop->before, loop->scan_count * sizeof *loop->before);
   memset(loop->before, 0, loop->scan_count * sizeof *loop->before);
-  next->levelled = true;
+  next->levelled = loop->levelled + 1;
+  next->level_half = loop->tone.level.half;
   for (size_t i = 0; i < next->scan_count; i++)
-    FG_TRY_EXIT(fg_level_apply(ctx, &loop->tone.level, next->options.threads, &next->before[i]));
+    FG_TRY_EXIT(move_to_level(ctx, &loop->tone.level, next->options.threads, &next->before[i]));
 exit:
   fg_scan_loop_free(loop);
   if (status == FG_OK) return close_loop(ctx, next, result);
   fg_scan_loop_free(next);
   return status;
+}
+
+/* A level that was taken before the effects were known may hold a part of them. */
+static bool is_away(const fg_scan_loop *loop) {
+  return fg_model_tone_is_away(&loop->tone, loop->levelled ? loop->level_half : 0.5);
 }
 
 /* From measured scans to the result; frees the loop when it fails. */
@@ -318,11 +338,10 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
       fg_scan_loop_bumps_check_forming(ctx, loop->options.forming, loop->before, loop->scan_count));
   FG_TRY_EXIT(build_points(ctx, loop));
   loop->tone = fg_scan_loop_find_tone(loop, false);
-  if (!loop->levelled && !loop->tone.contradicted && fg_model_tone_is_significant(&loop->tone))
+  if (!loop->levelled && !loop->tone.contradicted && is_away(loop))
     return level_again(ctx, loop, result);
   FG_TRY_EXIT(search_effects(ctx, loop));
-  if (!loop->levelled && fg_model_tone_is_significant(&loop->tone))
-    return level_again(ctx, loop, result);
+  if (loop->levelled < LEVELLED_MAX && is_away(loop)) return level_again(ctx, loop, result);
   FG_TRY_EXIT(calibrate(ctx, loop));
   *result = loop;
 exit:

@@ -40,8 +40,8 @@ double fg_model_tone_shown_by(const fg_disc *disc) {
   return shown_level(as_found, disc->plain_mm, disc->plain_blur_um, disc->bright);
 }
 
-bool fg_model_tone_is_significant(const fg_model_tone *tone) {
-  return tone->gauges && fabs(tone->level.half - 0.5) > SIGNIFICANT * tone->level.u;
+bool fg_model_tone_is_away(const fg_model_tone *tone, double half) {
+  return tone->gauges && fabs(tone->level.half - half) > SIGNIFICANT * tone->level.u;
 }
 
 /* ---- the file ---- */

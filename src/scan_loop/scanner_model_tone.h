@@ -25,8 +25,8 @@ typedef struct fg_model_tone {
 /* T(1/2) less a half, as the edge model explains the edge of a disc. */
 double fg_model_tone_shown_by(const fg_disc *disc);
 
-/* Returns true when the level differs significantly from half of the counts. */
-bool fg_model_tone_is_significant(const fg_model_tone *tone);
+/* Returns true when the level differs significantly from where the edges are. */
+bool fg_model_tone_is_away(const fg_model_tone *tone, double half);
 
 /* Reads member `tone` of a model; absent: unknown. */
 fg_status fg_model_tone_read(fg_context *ctx, const cJSON *root, fg_model_tone *tone);

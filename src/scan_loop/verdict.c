@@ -300,6 +300,7 @@ static void fill_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->same_foil = loop->options.same_foil;
   result->without = loop->options.without;
   result->discs = loop->edge_fit.discs;
+  result->uneven_discs = fg_scan_loop_has_uneven_discs(loop);
   result->scale_tied = loop->scale_tied;
   result->noise_floor_um = loop->noise_floor_um;
   result->edge_model_error_um = loop->explanations.edge_error_um;

@@ -23,6 +23,10 @@ static inline bool fg_scan_loop_would_show(double smallest_um) {
 fg_loop_outcome fg_scan_loop_outcome(const struct fg_scan_loop *loop);
 fg_loop_outcome fg_scan_loop_points_outcome(const struct fg_scan_loop *loop);
 
+/* Returns true where nothing is claimed of discs that deviate from circles by more than noise:
+ * their own forms. */
+bool fg_scan_loop_has_uneven_discs(const struct fg_scan_loop *loop);
+
 /* Fills `result` of the loop from search and fit; replaces an earlier one. */
 fg_status fg_scan_loop_decide(fg_context *ctx, struct fg_scan_loop *loop);
 

@@ -27,4 +27,26 @@ DESIGN
 [ "$(value steps.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")" = "['scan.row_step found', 'scan.row_step found', 'scan.row_step found']" ] ||
   fail "lost rows are $(value steps.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
 near "largest error of a radius, um" "$(value steps.out "max(min(abs(1000 * d['radius_mm'] - 250 * n) for n in range(16)) for d in r['after']['discs'])")" 0 0.1
+
+# A ripple moves the radii of five pins so that a level and a scale explain them nearly: a level that was taken from them is
+# taken again once the ripple is known.
+cat >ripple.json <<'SPEC'
+{"schema": "foilgauge/render/1", "seed": 371740109,
+ "discs": [{"centre_mm": [11.3729, 4.5133], "radius_mm": 1},
+           {"centre_mm": [20.5994, 4.7955], "radius_mm": 1.5},
+           {"centre_mm": [11.8372, 12.0794], "radius_mm": 3},
+           {"centre_mm": [3.499, 11.9104], "radius_mm": 2.5},
+           {"centre_mm": [20.3443, 12.3694], "radius_mm": 2}],
+ "scanner": {"dpi": 2400, "blur_px": 1.3219, "noise": 1.0,
+             "rough": {"edge_roughness_um": 1.2, "edge_common_um": 0.6, "correlation_um": 45, "correlation_form": "exponential"}},
+ "effects": [{"id": "scan.carriage_ripple", "amplitude_um": 8.164, "period_mm": 3.3176, "phase_deg": 202.72}]}
+SPEC
+cat >five.json <<'DESIGN'
+{"schema": "foilgauge/design/1", "name": "pins", "form": "discs", "diameters_mm": [2, 3, 4, 5, 6]}
+DESIGN
+"$renderer" render ripple.json -o ripple.png || fail "render a ripple"
+"$program" loop ripple.png --design five.json -o ripple.out || fail "loop on known pins and a ripple"
+[ "$(value ripple.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")" = "['scan.carriage_ripple found']" ] ||
+  fail "a ripple is $(value ripple.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
+near "largest error of a radius beside a ripple, um" "$(value ripple.out "max(min(abs(1000 * d['radius_mm'] - 500 * n) for n in range(8)) for d in r['after']['discs'])")" 0 1
 exit $failed

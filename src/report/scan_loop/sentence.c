@@ -138,6 +138,12 @@ static fg_status say_chance(fg_context *ctx, double p, char **text) {
 static fg_status say_clean(fg_context *ctx, const fg_scan_result *result, char **text) {
   char rms[32];
   fg_scan_loop_length_words(result->before.rms, rms, sizeof rms);
+  if (result->uneven_discs)
+    return fg_text_print(ctx, text,
+                         "Nothing is claimed of the scanner: the discs deviate from circles (%s "
+                         "rms) by more than noise, and not as one cause on all of them would have "
+                         "it. The dimensions stand as measured.",
+                         rms);
   return fg_text_print(ctx, text,
                        "Nothing is claimed: what the circles leave of the edges (%s rms) is noise "
                        "as far as %s can tell. The dimensions stand as measured.",
