@@ -10,6 +10,8 @@
  * worth a note. */
 #define FOUND_ERRORS 5.0
 #define NOTED_ERRORS 3.0
+/* Scatter of known radii over their u, from which it is worth one. */
+#define NOTED_SCATTER 3.0
 /* Standard uncertainty of a flatbed's scale of which nothing is known. */
 #define UNKNOWN_SCALE 0.003
 
@@ -70,6 +72,16 @@ static void put_smallest(double scale, fg_explanations *explanations) {
     }
 }
 
+static fg_status note_scatter(fg_context *ctx, fg_scan_loop *loop, const deviations *of) {
+  if (of->scatter < NOTED_SCATTER) return FG_OK;
+  return fg_scan_loop_bumps_note(
+      ctx, &loop->bumps,
+      "points: the radii of the %zu known discs deviate from the known ones by %.2g um beside any "
+      "level and scale, at a stated uncertainty of %.2g um: a cause that is not found moves them, "
+      "or a stated diameter is another disc's",
+      of->count, of->scatter * of->u_um, of->u_um);
+}
+
 fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
   if (!loop->by_evidence || !loop->edge_fit.known_count || fg_effect_set_scales(&loop->set))
     return FG_OK;
@@ -77,6 +89,7 @@ fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
   double u_scale = of.scatter * loop->tone.u_scale, smallest = FOUND_ERRORS * u_scale;
   if (u_scale < UNKNOWN_SCALE) loop->u_scale = u_scale;
   put_smallest(smallest, &loop->explanations);
+  FG_TRY(note_scatter(ctx, loop, &of));
   if (fabs(of.mean_um) * sqrt((double)of.count) < NOTED_ERRORS * of.scatter * of.u_um) return FG_OK;
   return fg_scan_loop_bumps_note(
       ctx, &loop->bumps,
