@@ -33,8 +33,14 @@ static sources find_sources(const fg_scan_result *result) {
   return found;
 }
 
+static bool knows_diameters(const fg_scan_result *result) {
+  return result->scans && result->scan[0].before->design.discs.count > 0;
+}
+
 static fg_status add_scans(fg_context *ctx, const fg_scan_result *result, char **command) {
-  if (result->discs) FG_TRY(fg_text_append(ctx, command, " --form discs"));
+  if (result->discs)
+    FG_TRY(fg_text_append(ctx, command,
+                          knows_diameters(result) ? " --design DIAMETERS.json" : " --form discs"));
   if (result->same_foil) FG_TRY(fg_text_append(ctx, command, " --same-foil"));
   if (result->without) FG_TRY(fg_text_append(ctx, command, " --without %s", result->without));
   for (size_t i = 0; i < result->scans; i++) {
@@ -74,7 +80,11 @@ static fg_status correct_scanner(fg_context *ctx, const fg_scan_result *result, 
   return correct_by_model(ctx, result, commands);
 }
 
-static const char *for_part(sources found) {
+static const char *for_part(const fg_scan_result *result, sources found) {
+  if (found.part && result->discs)
+    return "Correct nothing by it: the discs' own shapes look like this, and so do edges that a "
+           "scanner shifts by their direction; turn the discs by 90 degrees and scan again: a "
+           "shape that turns with them is theirs. The dimensions stand as measured.";
   if (found.part)
     return "Correct the part, not the scanner: what was found turns with the foil, so look at the "
            "die, the press or how the foil was held; the dimensions below are without it.";
@@ -96,6 +106,6 @@ fg_status fg_scan_loop_next(fg_context *ctx, const fg_scan_result *result, char 
   if (!result->named) return tell_apart(ctx, result, words, commands);
   if (found.scanner) return correct_scanner(ctx, result, found, words, commands);
   if (found.part || found.width || found.bumps)
-    return fg_text_print(ctx, words, "%s", for_part(found));
+    return fg_text_print(ctx, words, "%s", for_part(result, found));
   return fg_text_print(ctx, words, "Nothing to correct: use the dimensions as they were measured.");
 }
