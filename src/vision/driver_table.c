@@ -59,3 +59,22 @@ void fg_driven_tables_fill(const fg_driver *driver, const fg_driver_tone *tone,
         (float)((grid[after] - grid[before]) / ((double)(after - before) * FG_DRIVEN_STEP_PX));
   }
 }
+
+__attribute__((target_clones("avx2", "default"))) static void
+interpolate(const float *restrict memory, int32_t size, size_t count, const int32_t *restrict start,
+            const float *restrict steps, float *restrict counts, float *restrict rates) {
+  for (size_t k = 0; k < count; k++) {
+    int32_t whole = (int32_t)steps[k], i = start[k] + whole;
+    float f = steps[k] - (float)whole;
+    counts[k] = memory[i - 1] * (-f * (f - 1) * (f - 2) / 6) +
+                memory[i] * ((f + 1) * (f - 1) * (f - 2) / 2) +
+                memory[i + 1] * (-(f + 1) * f * (f - 2) / 2) +
+                memory[i + 2] * ((f + 1) * f * (f - 1) / 6);
+    rates[k] = memory[i + size] + f * (memory[i + size + 1] - memory[i + size]);
+  }
+}
+
+void fg_driven_tables_at(const fg_driven_tables *tables, size_t count, const int32_t *start,
+                         const float *steps, float *counts, float *rates) {
+  interpolate(tables->memory, (int32_t)tables->size, count, start, steps, counts, rates);
+}

@@ -3,6 +3,8 @@
 #ifndef FG_VISION_DRIVER_TABLE_H
 #define FG_VISION_DRIVER_TABLE_H
 
+#include <stdint.h>
+
 #include "vision/driver_places.h"
 
 /* One profile about 0, and its rise there without slopes, which are the least certain part of an
@@ -31,10 +33,24 @@ void fg_driven_tables_fill(const fg_driver *driver, const fg_driver_tone *tone,
                            const double *values, bool single, fg_driven_tables *tables,
                            size_t index);
 
+/* Steps from the start of a table to a place; below 1 or from size - 3 on: beyond it. */
+static inline float fg_driven_table_steps(const fg_driven_table *table, float across_px) {
+  return (across_px - (float)table->from_px) / (float)FG_DRIVEN_STEP_PX;
+}
+
+/* Index of a table's counts in the memory of all. */
+static inline int32_t fg_driven_tables_start(const fg_driven_tables *tables, size_t index) {
+  return (int32_t)(tables->list[index].counts - tables->memory);
+}
+
+/* Counts and rates at many places within tables: each by the start of its table and its steps. */
+void fg_driven_tables_at(const fg_driven_tables *tables, size_t count, const int32_t *start,
+                         const float *steps, float *counts, float *rates);
+
 /* Counts at a place and their change per px; false beyond the table. */
 static inline bool fg_driven_table_at(const fg_driven_table *table, float across_px, float *count,
                                       float *rate) {
-  float at = (across_px - (float)table->from_px) / (float)FG_DRIVEN_STEP_PX;
+  float at = fg_driven_table_steps(table, across_px);
   if (!(at >= 1) || at >= (float)(table->size - 3)) return false;
   size_t i = (size_t)at;
   float f = at - (float)i;

@@ -38,26 +38,57 @@ static driven_block mean_block(const fg_edge_work *work, size_t first, size_t la
   return block;
 }
 
-/* Adds a pixel, whose place is counted from the nearer edge. */
-static void add_pixel(const fg_driven_table *table, double half_px, const float reach_px[2],
-                      fg_edge_station *s, const fg_band_pixel *p, float limit) {
+/* Pixels that wait for their counts. */
+enum { BATCH = 64 };
+typedef struct pixel_batch {
+  size_t count;
+  fg_edge_station *station[BATCH];
+  bool right[BATCH]; /* of the two edges */
+  int32_t start[BATCH];
+  float value[BATCH], steps[BATCH];
+} pixel_batch;
+
+/* Takes a pixel, whose place is counted from the nearer edge. */
+static void take_pixel(const fg_driven_tables *tables, size_t table, double half_px,
+                       const float reach_px[2], fg_edge_station *s, const fg_band_pixel *p,
+                       pixel_batch *batch) {
+  const fg_driven_table *own = &tables->list[table];
   float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
-  int side = right > left;
-  float d = side ? right : left, model, rate;
+  bool side = right > left;
+  float d = side ? right : left;
   if (d > reach_px[side]) return;
   float from_middle = (float)half_px + d;
-  if (!fg_driven_table_at(table, side ? from_middle : -from_middle, &model, &rate)) return;
-  if ((model >= 254.5f && p->value >= 254.5f) || (model <= 0.5f && p->value <= 0.5f)) return;
+  float steps = fg_driven_table_steps(own, side ? from_middle : -from_middle);
+  if (!(steps >= 1) || steps >= (float)(own->size - 3)) return;
+  size_t k = batch->count++;
+  batch->station[k] = s;
+  batch->right[k] = side;
+  batch->start[k] = fg_driven_tables_start(tables, table);
+  batch->value[k] = p->value;
+  batch->steps[k] = steps;
+}
+
+static void add_pixel(fg_edge_station *s, bool right, float value, float model, float rate,
+                      float limit) {
+  if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
   s->seen++; /* a pixel cut off at an end of the scale is neither evidence nor an outlier */
-  float residual = p->value - model;
+  float residual = value - model;
   if (fabsf(residual) > limit) return;
-  float f1 = side ? 0 : -rate, f2 = side ? -rate : 0;
+  float f1 = right ? 0 : -rate, f2 = right ? -rate : 0;
   s->m11 += f1 * f1;
   s->m22 += f2 * f2;
   s->g1 += f1 * residual;
   s->g2 += f2 * residual;
   s->misfit += residual * residual;
   s->used++;
+}
+
+static void add_batch(const fg_driven_tables *tables, pixel_batch *batch, float limit) {
+  float model[BATCH], rate[BATCH];
+  fg_driven_tables_at(tables, batch->count, batch->start, batch->steps, model, rate);
+  for (size_t k = 0; k < batch->count; k++)
+    add_pixel(batch->station[k], batch->right[k], batch->value[k], model[k], rate[k], limit);
+  batch->count = 0;
 }
 
 /* Reach of a station's edges, outwards. */
@@ -90,15 +121,19 @@ static double table_reach(const fg_edge_work *work, const driven_block *blocks, 
 }
 
 static void add_band(const fg_edge_work *work, size_t chunk, const driven_block *blocks,
-                     const fg_driven_table *tables, const station_reach *reach, float limit) {
+                     const fg_driven_tables *tables, const station_reach *reach, float limit) {
   size_t first, last;
+  pixel_batch batch;
+  batch.count = 0;
   fg_edges_chunk(work, chunk, &first, &last);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     size_t station = (size_t)band->pixels[i].station, k = (station - first) / BLOCK_STATIONS;
-    add_pixel(&tables[k], blocks[k].half_px, reach[station - first].px, &work->stations[station],
-              &band->pixels[i], limit);
+    take_pixel(tables, k, blocks[k].half_px, reach[station - first].px, &work->stations[station],
+               &band->pixels[i], &batch);
+    if (batch.count == BATCH) add_batch(tables, &batch, limit);
   }
+  add_batch(tables, &batch, limit);
 }
 
 fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t chunk,
@@ -117,7 +152,7 @@ fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t 
   FG_TRY(fg_driven_tables_create(ctx, count, from_middle, &tables));
   for (size_t k = 0; k < count; k++)
     fg_driven_tables_fill(work->driver, work->driver_tone, blocks[k].values, false, &tables, k);
-  add_band(work, chunk, blocks, tables.list, reach, limit);
+  add_band(work, chunk, blocks, &tables, reach, limit);
   fg_driven_tables_free(&tables);
   return FG_OK;
 }
