@@ -19,7 +19,7 @@ enum {
   RIVAL_FRONT = 3,
   NAMED_MAX = 4,
   RIVALS_MAX = 3,
-  DISC_RIVALS_MAX = 2,
+  OWN_FORM_RIVALS_MAX = 2,
   ROUNDS = 4
 };
 #define REACH 60.0
@@ -127,10 +127,17 @@ static bool holds_rival(const fg_evidence_model *model, const fg_evidence_option
   return false;
 }
 
+static bool is_own_form(const fg_effect *effect, const fg_rival *rival) {
+  return (rival ? rival->coordinate : effect->coordinate) == FG_EFFECT_COORDINATES;
+}
+
 /* On few discs the own form of each is a rival: three of them, or two beside a field, would explain
  * what lost rows leave. */
-static size_t rivals_max(const fg_evidence_search *s) {
-  return s->problem.edge_fit->discs ? DISC_RIVALS_MAX : RIVALS_MAX;
+static size_t rivals_max(const fg_evidence_model *model, const fg_evidence_option *option) {
+  bool own = is_own_form(option->effect, option->rival);
+  for (size_t k = 0; k < model->parts; k++)
+    own = own || is_own_form(model->part[k]->effect, model->part[k]->rival);
+  return own ? OWN_FORM_RIVALS_MAX : RIVALS_MAX;
 }
 
 /* Counts the named effects of a model, but for a scale: known radii show it beside any of them. */
@@ -142,10 +149,10 @@ static size_t count_named(const fg_evidence_model *model) {
 }
 
 /* Ripples and steps may come several times, all others once, in one of their bases. */
-static bool may_join(const fg_evidence_search *s, const fg_evidence_model *model,
-                     const fg_evidence_option *option) {
+static bool may_join(const fg_evidence_model *model, const fg_evidence_option *option) {
   if (model->parts == FG_EVIDENCE_PARTS) return false;
-  if (!fg_effect_bears_name(option->effect) && model->parts - model->named == rivals_max(s))
+  if (!fg_effect_bears_name(option->effect) &&
+      model->parts - model->named >= rivals_max(model, option))
     return false;
   if (option->rival) return !holds_rival(model, option);
   if (fg_effect_bears_name(option->effect) && !option->effect->scales &&
@@ -197,7 +204,7 @@ static void list_extensions(const fg_evidence_model *from, bool named, extending
   fg_evidence_search *s = e->search;
   for (size_t o = 0; o < s->option_count && s->stored < FG_EVIDENCE_STORE; o++) {
     const fg_evidence_option *option = &s->options[o];
-    if (!may_join(s, from, option) || (named && !fg_effect_bears_name(option->effect))) continue;
+    if (!may_join(from, option) || (named && !fg_effect_bears_name(option->effect))) continue;
     e->list[e->count++] = (fg_evidence_extension){.option = option, .part = &s->store[s->stored++]};
   }
 }

@@ -280,8 +280,20 @@ typedef struct seed_list {
   size_t count;
 } seed_list;
 
+static double noise_of(const fg_scatter *s) {
+  return s->row_um * sqrt((s->share > 0 ? s->integral : 1) * fmax(1, s->swell));
+}
+
 /* On discs the search gives every disc's form to the noise, which evidence holds apart: its noise
- * is that of the edge beside them. */
+ * is that of the edge beside them, at its least: a curve in place of a cause leaves more. */
+static fg_status take_edge_noise(fg_context *ctx, fg_scan_loop *loop) {
+  fg_scatter *now = &loop->edge_fit.scatter, *least = &loop->least_scatter;
+  FG_TRY(fg_edge_fit_find_scatter(ctx, &loop->edge_fit, loop->residual_after));
+  if (!(least->row_um > 0) || noise_of(now) < noise_of(least)) *least = *now;
+  *now = *least;
+  return FG_OK;
+}
+
 static fg_status open_search(fg_context *ctx, fg_scan_loop *loop, const double *residual,
                              const double *jacobian, const seed_list *seeds,
                              fg_evidence_search *search) {
@@ -295,7 +307,7 @@ static fg_status open_search(fg_context *ctx, fg_scan_loop *loop, const double *
   };
   fg_edge_fit *edge_fit = &loop->edge_fit;
   const fg_scatter before = edge_fit->scatter;
-  if (edge_fit->discs) FG_TRY(fg_edge_fit_find_scatter(ctx, edge_fit, loop->residual_after));
+  if (edge_fit->discs) FG_TRY(take_edge_noise(ctx, loop));
   fg_status status = fg_evidence_search_open(ctx, edge_fit, &request, residual, jacobian, search);
   edge_fit->scatter = before;
   return status;
@@ -437,6 +449,15 @@ static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
   return fit_set(ctx, loop, &loop->set);
 }
 
+/* A curve of discs stands for a cause without a name, which it may fit badly: nothing is sought
+ * about it. */
+static bool stands_for_cause(const fg_scan_loop *loop) {
+  bool curves = loop->edge_fit.discs && loop->set.count > 0 && loop->least_scatter.row_um > 0;
+  for (size_t e = 0; e < loop->set.count; e++)
+    curves = curves && fg_effect_is_free(loop->set.effects[e].kind);
+  return curves;
+}
+
 fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
   fg_edge_fit *edge_fit = &loop->edge_fit;
   double *residual = NULL, *jacobian = NULL;
@@ -449,7 +470,7 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
                                  (void **)&jacobian));
   FG_TRY_EXIT(fg_memory_allocate(ctx, SEEDS_MAX, sizeof *seeds.set, (void **)&seeds.set));
   seed_by_search(loop, &seeds);
-  for (int round = 0; moved && round < LINEARISATIONS; round++)
+  for (int round = 0; moved && round < LINEARISATIONS && !stands_for_cause(loop); round++)
     FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &seeds, round == 0, &moved));
   if (edge_fit->known_count) FG_TRY_EXIT(fit_beside_known_radii(ctx, loop));
   loop->by_evidence = true;
