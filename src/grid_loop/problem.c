@@ -140,11 +140,18 @@ static fg_status check_certificate(fg_context *ctx, const fg_measurement *m,
                                    const fg_grid_certificate *certificate) {
   const fg_grid *grid = m->grid;
   int rows = grid->kind == FG_MARKS_LINES ? 1 : grid->rows;
-  if (grid->columns == certificate->columns && rows == certificate->rows) return FG_OK;
+  if (grid->columns != certificate->columns || rows != certificate->rows)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s shows %d columns and %d rows of marks, the certificate has %d and %d: lay "
+                   "the whole plate on the glass, its columns along x as in the table",
+                   m->scan, grid->columns, rows, certificate->columns, certificate->rows);
+  double better;
+  int turn = fg_grid_certificate_turn(certificate, grid, &better);
+  if (!turn) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
-                 "%s shows %d columns and %d rows of marks, the certificate has %d and %d: lay the "
-                 "whole plate on the glass, its columns along x as in the table",
-                 m->scan, grid->columns, rows, certificate->columns, certificate->rows);
+                 "%s: the plate lies turned by %d degrees clockwise against its certificate: its "
+                 "marks fit the table %.1f times better so; lay it on the glass as in the table",
+                 m->scan, 90 * turn, better);
 }
 
 static fg_status read_certificate(fg_context *ctx, const fg_measurement *measurements, size_t count,

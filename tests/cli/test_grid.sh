@@ -130,6 +130,11 @@ echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "certifi
 expect 0 "" "$program" loop odd.png --design certified.json -o certified_loop.json --model-out certified_model.json
 near "the scale by a certificate" "$(member certified_loop.json axis_ratio)" 1.004 0.00003
 near "the marks by a certificate" "$(python3 -c "import json; print(json.load(open('certified_loop.json'))['after']['rms'])")" 0.3 0.3
+awk -F, -v OFS=, 'NR > 1 { $1 = 11 - $1; $2 = 11 - $2; $3 = 50 - $3; $4 = 50 - $4 } { print }' plate.csv >turned.csv
+sed 's/plate.csv/turned.csv/' certified.json >turned.json
+expect 65 "turned by 180 degrees clockwise against its certificate" "$program" loop odd.png --design turned.json -o never.json
+awk -F, -v OFS=, 'NR > 1 { c = $1; x = $3; $1 = $2; $2 = 11 - c; $3 = $4; $4 = 50 - x } { print }' plate.csv >turned.csv
+expect 65 "turned by 90 degrees clockwise against its certificate" "$program" loop odd.png --design turned.json -o never.json
 head -n 100 plate.csv >short.csv
 sed 's/plate.csv/short.csv/' certified.json >short.json
 expect 65 "lay the whole plate on the glass" "$program" loop odd.png --design short.json -o never.json
