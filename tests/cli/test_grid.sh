@@ -169,6 +169,26 @@ P
 expect 0 "" "$program" measure large.png --design pitch.json --model large_model.json -o large_corrected.json
 near "marks through the model of a ripple" "$(member large_corrected.json rms_um)" 0 0.3
 
+# Beyond the map of a plate U holds the changes that the map has inside.
+cat >part.json <<S
+{"schema": "foilgauge/render/1", "seed": 4, "scanner": {"dpi": 600},
+ "effects": [{"id": "free.scan.x", "knots": [[0, 0], [8, 12], [15, -9], [23, 8], [30, -12]]}],
+ "grids": [{"marks": "dots", "centre_mm": [12, 18], "pitch_mm": 2.5, "mark_mm": 0.8, "columns": 8, "rows": 12, "rotate_deg": 1}]}
+S
+sed '/"grids"/d; s/"effects": \(.*\),$/"effects": \1, "width_px": 800, "height_px": 850,\n "discs": [{"centre_mm": [12, 18], "radius_mm": 5}, {"centre_mm": [24, 18], "radius_mm": 5}]}/' part.json >beyond.json
+expect 0 "" "$program" render part.json -o part.png
+expect 0 "" "$program" render beyond.json -o beyond.png
+expect 0 "" "$program" loop part.png --design pitch.json -o part_loop.json --model-out part_model.json
+expect 0 "" "$program" measure beyond.png --form discs --tone linear --model part_model.json -o beyond_discs.json
+python3 - <<'P' || fail "U of a pin beyond the map"
+import json
+inside, beyond = sorted(json.load(open('beyond_discs.json'))['discs'], key=lambda d: d['centre_mm'][0])
+for d in (inside, beyond):
+    assert abs(d['radius_mm'] - 5) < 2.5 * d['u_radius_mm'], d
+assert beyond['u_radius_mm'] > 1.5 * inside['u_radius_mm'] > 0, (inside, beyond)
+assert 'beyond_model_region' in beyond['flags'] and not inside['flags'], (inside['flags'], beyond['flags'])
+P
+
 # Names are for displacements that no map follows: tilted chips with gaps, and a ripple whose period is as uncertain as the marks make it.
 spec chips.json dots 1.5 4 '{"id": "scan.chip_tilt", "amplitude_um": 12, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.chip_gap",
  "amplitude_um": 9, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 8.5}'
