@@ -32,6 +32,7 @@ typedef struct fg_mark {
   fg_point residual_mm; /* measured less fitted; of lines across the line only */
   double blur_um;       /* sd of the edges' blur */
   double contrast;      /* counts, inside less outside */
+  double reach_mm;      /* a dot's radius, half the length of a corner's edges; 0: not known */
   int polarity; /* of a chessboard's corner: 1 or -1, which alternate from corner to corner */
   bool used;    /* not an outlier of the lattice */
 } fg_mark;

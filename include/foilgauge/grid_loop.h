@@ -90,6 +90,8 @@ typedef struct fg_grid_loop_result {
   double low_mm[2], high_mm[2];                 /* region */
   fg_grid_map_point *map;                       /* owned; row by row */
   size_t map_columns, map_rows;
+  double wave_mm, short_wave_mm; /* a ripple in the model, and the one that the marks show as it; 0:
+                                    none */
   char sentence[FG_GRID_WORDS], advice[FG_GRID_WORDS];
 } fg_grid_loop_result;
 

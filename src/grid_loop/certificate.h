@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "foilgauge/circle.h"
+#include "foilgauge/grid.h"
 #include "foilgauge/status.h"
 
 typedef struct fg_grid_certificate {
@@ -24,5 +25,11 @@ void fg_grid_certificate_free(fg_grid_certificate *certificate);
 /* Place of a mark; false where the table has none. */
 bool fg_grid_certificate_at(const fg_grid_certificate *certificate, const int index[2],
                             fg_point *place);
+
+/* Quarter turns, clockwise, by which the plate lies turned against its table: by the marks' own
+ * deviations, which must fit far better so. `better` is how many times better; 1 where the answer
+ * is 0. */
+int fg_grid_certificate_turn(const fg_grid_certificate *certificate, const fg_grid *grid,
+                             double *better);
 
 #endif

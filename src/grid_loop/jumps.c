@@ -7,18 +7,13 @@
 
 #define BESIDE_MM 1e-6
 
-/* Coordinate of the jump that is nearest to a place. */
-static double nearest_jump(const grid_effect *effect, double along) {
-  double first = effect->shape[0], pitch = effect->shape[1];
-  return effect->kind->shapes > 1 ? first + pitch * round((along - first) / pitch) : first;
-}
-
-/* Distance of the jump from the nearest mark on one side of it. */
+/* Distance of the jump from the nearest mark on one side of it; of one that it cuts, the mark's
+ * reach. */
 static double gap_beside(const grid_problem *problem, int axis, double jump, double side) {
   double gap = INFINITY;
   for (size_t i = 0; i < problem->row_count; i++) {
     double off = side * (fg_point_along(problem->rows[i].at, axis) - jump);
-    if (problem->rows[i].used && off >= 0) gap = fmin(gap, off);
+    if (problem->rows[i].used && off >= 0) gap = fmin(gap, fmax(off, problem->rows[i].reach_mm));
   }
   return gap;
 }
@@ -44,7 +39,7 @@ fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at) {
     const grid_effect *effect = &problem->model.effect[e];
     int axis = effect->kind->axis;
     if (effect->kind->jumps) {
-      double along = fg_point_along(at, axis), jump = nearest_jump(effect, along);
+      double along = fg_point_along(at, axis), jump = fg_grid_nearest_jump(effect, along);
       double gap = gap_beside(problem, axis, jump, along < jump ? -1 : 1);
       fg_point size = jump_of(loop, effect, column, at, jump);
       if (fabs(along - jump) < gap) {
@@ -59,7 +54,7 @@ fg_point fg_grid_jump_variance(const fg_grid_loop *loop, fg_point at) {
 
 double fg_grid_jump_u_mm(const grid_problem *problem, const grid_effect *effect) {
   int axis = effect->kind->axis;
-  double jump = nearest_jump(effect, problem->model.frame.centre_mm[axis]), gap = 0;
+  double jump = fg_grid_nearest_jump(effect, problem->model.frame.centre_mm[axis]), gap = 0;
   if (!effect->kind->jumps) return 0;
   for (double side = -1; side <= 1; side += 2)
     gap += gap_beside(problem, axis, jump, side);

@@ -7,12 +7,15 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "geometry/mark_nodes.h"
 
 /* Prior sd of scale, ratio and shear of a board of which nothing is stated: printers err by some
  * parts in a thousand. */
 #define U_PRINTED 0.01
 /* Spacing of the splines of a map, as a share of the region's longer side; marks per spline. */
 enum { MAP_INTERVALS = 10, MARKS_PER_SPLINE = 3 };
+/* Nodes of a mark on a smooth field, and columns of a map over them. */
+enum { SMOOTH_NODES = 8, MARK_MAP_MAX = 2 * 5 * 5 };
 
 /* Share of a shape over which its derivative is taken. */
 #define SHAPE_STEP 1e-4
@@ -54,6 +57,37 @@ size_t fg_grid_effect_moves(const grid_effect *effect, const fg_field_frame *fra
   return n;
 }
 
+double fg_grid_nearest_jump(const grid_effect *effect, double along) {
+  double first = effect->shape[0], pitch = effect->shape[1];
+  return effect->kind->shapes > 1 ? first + pitch * round((along - first) / pitch) : first;
+}
+
+/* Nodes that an effect needs on a mark: what a mark does not see as one place is a wave, a decay,
+ * or a jump between its edges. */
+static size_t nodes_for(const grid_effect *effect, const grid_row *row) {
+  if (!effect->kind->shapes || effect->kind->polynomial != FG_EFFECT_NO_POLYNOMIAL) return 1;
+  if (!effect->kind->jumps) return SMOOTH_NODES;
+  double along = fg_point_along(row->at, effect->kind->axis);
+  return fabs(along - fg_grid_nearest_jump(effect, along)) < row->reach_mm ? FG_MARK_NODES_MAX : 1;
+}
+
+size_t fg_grid_effect_of_row(const grid_effect *effect, const fg_field_frame *frame,
+                             const grid_row *row, double value[FG_FIELD_COLUMNS]) {
+  fg_mark_node nodes[FG_MARK_NODES_MAX];
+  fg_mark mark = {.at_mm = row->at, .reach_mm = row->reach_mm, .polarity = row->corner};
+  size_t count = fg_mark_nodes(&mark, row->direction, nodes_for(effect, row), nodes);
+  size_t columns = fg_grid_effect_columns(effect);
+  for (size_t c = 0; c < columns; c++)
+    value[c] = 0;
+  for (size_t k = 0; k < count; k++) {
+    fg_point d[FG_FIELD_COLUMNS], weight = nodes[k].weight;
+    fg_grid_effect_moves(effect, frame, nodes[k].at, d);
+    for (size_t c = 0; c < columns; c++)
+      value[c] += weight.x * d[c].x + weight.y * d[c].y;
+  }
+  return columns;
+}
+
 grid_columns fg_grid_columns(const grid_problem *problem) {
   grid_columns c = {0};
   size_t effect_columns = 0;
@@ -82,6 +116,32 @@ static size_t add_map_columns(const fg_map_frame *frame, size_t first, fg_point 
   return n;
 }
 
+/* The mean of a map over a mark's edges. A mark is smaller than a spline's interval: its nodes lie
+ * in two intervals at most, along either axis. */
+static size_t add_marks_map(const fg_map_frame *frame, size_t first, const grid_row *row,
+                            size_t *index, double *value) {
+  fg_mark_node nodes[FG_MARK_NODES_MAX];
+  fg_mark mark = {.at_mm = row->at, .reach_mm = row->reach_mm, .polarity = row->corner};
+  size_t count = fg_mark_nodes(&mark, row->direction, SMOOTH_NODES, nodes), n = 0;
+  for (size_t k = 0; k < count; k++) {
+    size_t own_index[2 * FG_MAP_WEIGHTS];
+    double own[2 * FG_MAP_WEIGHTS];
+    size_t columns = add_map_columns(frame, first, nodes[k].at, nodes[k].weight, own_index, own);
+    for (size_t c = 0; c < columns; c++) {
+      size_t at = 0;
+      while (at < n && index[at] != own_index[c])
+        at++;
+      if (at == n) {
+        if (n == MARK_MAP_MAX) continue;
+        index[n] = own_index[c];
+        value[n++] = 0;
+      }
+      value[at] += own[c];
+    }
+  }
+  return n;
+}
+
 size_t fg_grid_row_columns(const grid_problem *problem, const grid_columns *columns,
                            const grid_row *row, size_t *index, double *value) {
   size_t n = 0;
@@ -103,15 +163,12 @@ size_t fg_grid_row_columns(const grid_problem *problem, const grid_columns *colu
   size_t at = columns->effect;
   for (size_t f = 0; f < problem->model.effects; f++) {
     const grid_effect *effect = &problem->model.effect[f];
-    fg_point d[FG_FIELD_COLUMNS];
-    size_t own = fg_grid_effect_moves(effect, &problem->model.frame, row->at, d);
-    for (size_t k = 0; k < own; k++, n++) {
+    size_t own = fg_grid_effect_of_row(effect, &problem->model.frame, row, value + n);
+    for (size_t k = 0; k < own; k++, n++)
       index[n] = at++;
-      value[n] = e.x * d[k].x + e.y * d[k].y;
-    }
   }
   if (problem->model.has_map)
-    n += add_map_columns(&problem->model.map, columns->map, row->at, e, index + n, value + n);
+    n += add_marks_map(&problem->model.map, columns->map, row, index + n, value + n);
   if (problem->model.has_board_map)
     n += add_map_columns(&problem->model.board_map, columns->board_map, p,
                          (fg_point){-on_board.x, -on_board.y}, index + n, value + n);
@@ -140,11 +197,18 @@ static fg_status check_certificate(fg_context *ctx, const fg_measurement *m,
                                    const fg_grid_certificate *certificate) {
   const fg_grid *grid = m->grid;
   int rows = grid->kind == FG_MARKS_LINES ? 1 : grid->rows;
-  if (grid->columns == certificate->columns && rows == certificate->rows) return FG_OK;
+  if (grid->columns != certificate->columns || rows != certificate->rows)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s shows %d columns and %d rows of marks, the certificate has %d and %d: lay "
+                   "the whole plate on the glass, its columns along x as in the table",
+                   m->scan, grid->columns, rows, certificate->columns, certificate->rows);
+  double better;
+  int turn = fg_grid_certificate_turn(certificate, grid, &better);
+  if (!turn) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
-                 "%s shows %d columns and %d rows of marks, the certificate has %d and %d: lay the "
-                 "whole plate on the glass, its columns along x as in the table",
-                 m->scan, grid->columns, rows, certificate->columns, certificate->rows);
+                 "%s: the plate lies turned by %d degrees clockwise against its certificate: its "
+                 "marks fit the table %.1f times better so; lay it on the glass as in the table",
+                 m->scan, 90 * turn, better);
 }
 
 static fg_status read_certificate(fg_context *ctx, const fg_measurement *measurements, size_t count,
@@ -209,6 +273,8 @@ static fg_status add_scan_rows(const fg_grid *grid, size_t scan, grid_problem *p
                                                        .at = m->at_mm,
                                                        .place = place,
                                                        .direction = e,
+                                                       .reach_mm = m->reach_mm,
+                                                       .corner = m->polarity != 0,
                                                        .value = e.x * off.x + e.y * off.y,
                                                        .arm = arm,
                                                        .used = true};
@@ -292,6 +358,27 @@ static void find_region(grid_problem *problem) {
   frame->knots = FG_FIELD_COLUMNS;
 }
 
+/* Share of a wave that the marks' places have in common with a wave of the frequency 0. */
+static double window_at(const grid_problem *problem, double frequency) {
+  double cosine = 0, sine = 0, n = 0;
+  for (size_t i = 0; i < problem->row_count; i++) {
+    const grid_row *row = &problem->rows[i];
+    if (i && row->scan == row[-1].scan && row->mark == row[-1].mark) continue;
+    double angle = 2 * M_PI * frequency * row->at.y;
+    cosine += cos(angle);
+    sine += sin(angle);
+    n++;
+  }
+  return hypot(cosine, sine) / n;
+}
+
+/* Two waves look alike where the sum of their frequencies is one at which all marks have one phase:
+ * on a board in line with the axes, the inverse of the pitch. */
+static void find_alike(grid_problem *problem) {
+  double frequency = 1 / problem->board[0].pitch_mm;
+  problem->alike_per_mm = window_at(problem, frequency) > 0.5 ? frequency : 0;
+}
+
 /* Splines over a box of marks; false where there are too few marks for a map. */
 static bool lay_map(const double low[2], const double high[2], double marks, fg_map_frame *frame) {
   double size[2] = {high[0] - low[0], high[1] - low[1]}, longer = fmax(size[0], size[1]);
@@ -339,6 +426,7 @@ fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measureme
   }
   number_groups(problem);
   find_region(problem);
+  find_alike(problem);
   lay_maps(problem);
   return FG_OK;
 }

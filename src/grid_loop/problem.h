@@ -22,6 +22,8 @@ typedef struct grid_row {
   size_t group;             /* rows of one mark's component share it, and stand together */
   fg_point at, place;       /* measured, mm of the scan; on the board, mm */
   fg_point direction;       /* e in the scan */
+  double reach_mm;          /* of the mark's edges; 0: not known */
+  bool corner;              /* of a chessboard */
   double value;             /* e (T0 p - m), mm */
   fg_point arm;             /* T0 p - origin */
   bool used, held_out;
@@ -48,6 +50,13 @@ size_t fg_grid_effect_columns(const grid_effect *effect);
 /* Displacement by every column of an effect for a unit of it; returns their number. */
 size_t fg_grid_effect_moves(const grid_effect *effect, const fg_field_frame *frame, fg_point at,
                             fg_point d[FG_FIELD_COLUMNS]);
+
+/* Mean displacement by every column over the edges of a row's mark, along the row's direction. */
+size_t fg_grid_effect_of_row(const grid_effect *effect, const fg_field_frame *frame,
+                             const grid_row *row, double value[FG_FIELD_COLUMNS]);
+
+/* Coordinate of the effect's jump that is nearest to a place. */
+double fg_grid_nearest_jump(const grid_effect *effect, double along);
 
 typedef struct grid_board {
   double pitch_mm; /* of the first fit, or as stated */
@@ -77,6 +86,7 @@ typedef struct grid_problem {
   int turns[FG_GRID_SCANS], offset[FG_GRID_SCANS][2]; /* from lattice indices to the board's */
   grid_board board[FG_GRID_SCANS];
   bool scale_known;
+  double alike_per_mm; /* the marks show waves as one whose frequencies have this sum; 0: none */
   grid_model model;
 } grid_problem;
 

@@ -64,16 +64,15 @@ static candidate_products project_candidate(grid_score_work *work, const grid_ef
   const grid_problem *problem = work->problem;
   size_t count = work->solution->columns.count, columns = candidate->kind->columns;
   candidate_products products = {0};
+  grid_effect fixed = *candidate;
+  fixed.loose = false;
   memset(work->cross, 0, columns * count * sizeof *work->cross);
   for (size_t i = 0; i < problem->row_count; i++) {
     const grid_row *row = &problem->rows[i];
     const grid_sparse_row *sparse = &work->rows[i];
-    fg_point d[FG_FIELD_COLUMNS];
-    double c[GRID_EFFECT_COLUMNS] = {0};
+    double c[FG_FIELD_COLUMNS];
     if (!row->used) continue;
-    candidate->kind->glass(&problem->model.frame, candidate->shape, row->at, d);
-    for (size_t k = 0; k < columns; k++)
-      c[k] = row->direction.x * d[k].x + row->direction.y * d[k].y;
+    fg_grid_effect_of_row(&fixed, &problem->model.frame, row, c);
     for (size_t k = 0; k < columns; k++) {
       if (c[k] == 0) continue;
       products.right[k] += c[k] * work->solution->residual[i];

@@ -133,6 +133,22 @@ static void tell_claims(fg_grid_loop *loop) {
                    columns->board + 1 + k);
 }
 
+/* The longest ripple, and its shorter likeness on marks in line with the axes. */
+static void tell_likeness(fg_grid_loop *loop) {
+  const grid_problem *problem = &loop->problem;
+  fg_grid_loop_result *result = &loop->result;
+  for (size_t e = 0; e < problem->model.effects; e++) {
+    const grid_effect *effect = &problem->model.effect[e];
+    if (effect->kind->numbers == FG_EFFECT_WAVE && effect->shape[0] > result->wave_mm)
+      result->wave_mm = effect->shape[0];
+  }
+  double likeness = problem->alike_per_mm - 1 / result->wave_mm;
+  if (result->wave_mm > 0 && likeness > 0)
+    result->short_wave_mm = 1 / likeness;
+  else
+    result->wave_mm = 0;
+}
+
 /* ---- the map ---- */
 
 /* Displacement of all map points by every column (x and y by turns), less shift and turn, which are
@@ -287,6 +303,7 @@ fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
   }
   FG_TRY(tell_scans(ctx, loop));
   tell_claims(loop);
+  tell_likeness(loop);
   if (problem->model.has_map)
     result->map_um = rms_of_map(loop, &problem->model.map, loop->solution.columns.map);
   if (problem->model.has_board_map)
@@ -332,4 +349,10 @@ void fg_grid_loop_say(fg_grid_loop_result *r) {
     fg_text_clip(r->advice, sizeof r->advice,
                  "The scale of both axes together stays unknown: state pitch_mm and u_pitch_mm of "
                  "a board that is known.");
+  else if (r->wave_mm > 0)
+    fg_text_clip(
+        r->advice, sizeof r->advice,
+        "On marks in line with the axes a ripple of %.3g mm looks like the one of %.3g mm: "
+        "a board of a finer pitch tells them apart.",
+        r->short_wave_mm, r->wave_mm);
 }

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "foilgauge/foil_kind.h"
 #include "geometry/disc_fit.h"
+#include "geometry/mark_nodes.h"
 
 static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to) {
   *to = *from;
@@ -102,6 +103,30 @@ static fg_status measure_disc(fg_context *ctx, const fg_disc *disc, const fg_mea
   return fg_disc_measure_again(ctx, again);
 }
 
+/* A mark moves by the mean over its edges, along both axes of its lattice. */
+static fg_point moved_mark(const fg_grid *grid, const fg_mark *mark,
+                           const fg_measure_mover *mover) {
+  enum { NODES = 12 };
+  double length = hypot(grid->axis_mm[0][0], grid->axis_mm[0][1]);
+  fg_point first = {grid->axis_mm[0][0] / length, grid->axis_mm[0][1] / length};
+  const fg_point axes[2] = {first, {-first.y, first.x}};
+  fg_point moved = mark->at_mm;
+  if (!(length > 0) || !(mark->reach_mm > 0)) return mover->flat(mover->user, mark->at_mm);
+  for (int a = 0; a < 2; a++) {
+    fg_mark_node nodes[FG_MARK_NODES_MAX];
+    size_t count = fg_mark_nodes(mark, axes[a], NODES, nodes);
+    double move = 0;
+    for (size_t k = 0; k < count; k++) {
+      fg_point to = mover->flat(mover->user, nodes[k].at);
+      move +=
+          nodes[k].weight.x * (to.x - nodes[k].at.x) + nodes[k].weight.y * (to.y - nodes[k].at.y);
+    }
+    moved.x += move * axes[a].x;
+    moved.y += move * axes[a].y;
+  }
+  return moved;
+}
+
 static fg_status measure_grid_again(fg_context *ctx, const fg_measurement *m,
                                     const fg_measure_mover *mover, fg_measurement *again) {
   const fg_grid *from = m->grid;
@@ -115,7 +140,7 @@ static fg_status measure_grid_again(fg_context *ctx, const fg_measurement *m,
   FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *to->marks, (void **)&to->marks));
   memcpy(to->marks, from->marks, from->count * sizeof *to->marks);
   for (size_t i = 0; i < to->count; i++)
-    to->marks[i].at_mm = mover->flat(mover->user, from->marks[i].at_mm);
+    to->marks[i].at_mm = moved_mark(from, &from->marks[i], mover);
   if (fg_grid_fit(to, m->dpi)) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA, "%s: the marks lie on one line", m->scan);
 }

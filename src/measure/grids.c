@@ -197,6 +197,12 @@ static int polarity_of(const grid_work *work, const fg_mark_fit *fit) {
   return fit->p[FG_MARK_CONTRAST] < 0 ? sign : -sign;
 }
 
+/* Length over which the edges of a mark tell its place, px. */
+static double reach_of(const grid_work *work, const fg_mark_fit *fit) {
+  if (work->kind == FG_MARKS_DOTS) return fit->p[FG_MARK_SHAPE];
+  return work->kind == FG_MARKS_CHESSBOARD ? fit->reach_px : 0;
+}
+
 static int compare_marks(const void *a, const void *b) {
   const fg_mark *x = a, *y = b;
   if (x->row != y->row) return x->row - y->row;
@@ -219,6 +225,7 @@ static fg_status hand_out_marks(fg_context *ctx, const grid_work *work, const fg
                                            .u_mm = hypot(fit->u_px, loss) * mm,
                                            .blur_um = 1000 * blur * mm,
                                            .contrast = contrast,
+                                           .reach_mm = reach_of(work, fit) * mm,
                                            .polarity = polarity_of(work, fit)};
   }
   fg_sort_items(grid->marks, grid->count, sizeof *grid->marks, compare_marks);

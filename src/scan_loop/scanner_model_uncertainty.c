@@ -118,6 +118,116 @@ static fg_status step_modes(fg_context *ctx, const fg_scanner_model *model, cons
   return status;
 }
 
+/* ---- beyond the region of a map ---- */
+
+enum { SIDES = 4, BORDER_POINTS = 21 };
+
+/* Side `side` of a region: its axis, and the way out of the region along it. */
+static int axis_of_side(int side) {
+  return side / 2;
+}
+
+static double border_of_side(const double low_mm[2], const double high_mm[2], int side) {
+  return side % 2 ? high_mm[axis_of_side(side)] : low_mm[axis_of_side(side)];
+}
+
+static double way_out(int side) {
+  return side % 2 ? 1 : -1;
+}
+
+/* Bounds of all parts. */
+static void find_bounds(const fg_measurement *m, double low[2], double high[2]) {
+  for (int axis = 0; axis < 2; axis++) {
+    low[axis] = INFINITY;
+    high[axis] = -INFINITY;
+    for (size_t f = 0; f < m->foil_count; f++) {
+      const double *place = m->foils[f].place_mm;
+      low[axis] = fmin(low[axis], place[axis]);
+      high[axis] = fmax(high[axis], place[axis] + place[2 + axis]);
+    }
+    for (size_t d = 0; d < m->disc_count; d++) {
+      fg_point c = m->discs[d].centre_mm;
+      double at = axis ? c.y : c.x, r = m->discs[d].radius_mm;
+      low[axis] = fmin(low[axis], at - r);
+      high[axis] = fmax(high[axis], at + r);
+    }
+    for (size_t k = 0; m->grid && k < m->grid->count; k++) {
+      double at = axis ? m->grid->marks[k].at_mm.y : m->grid->marks[k].at_mm.x;
+      low[axis] = fmin(low[axis], at);
+      high[axis] = fmax(high[axis], at);
+    }
+  }
+}
+
+/* Share of the way from a border, shape[0], to shape[1]; both components. */
+static void beyond_border(int axis, const double *shape, fg_point at, fg_point *d) {
+  double share = fmax(0, ((axis ? at.y : at.x) - shape[0]) / (shape[1] - shape[0]));
+  d[0] = (fg_point){share, 0};
+  d[1] = (fg_point){0, share};
+}
+
+static void beyond_border_x(const fg_field_frame *frame, const double *shape, fg_point at,
+                            fg_point *d) {
+  (void)frame;
+  beyond_border(0, shape, at, d);
+}
+
+static void beyond_border_y(const fg_field_frame *frame, const double *shape, fg_point at,
+                            fg_point *d) {
+  (void)frame;
+  beyond_border(1, shape, at, d);
+}
+
+/* Root mean square change of the map, x and y, from a border inwards by a distance. */
+static void find_change_at_border(const fg_scanner_model *model, int side, double distance,
+                                  double change[2]) {
+  const fg_map_frame *frame = &model->map.frame;
+  int axis = axis_of_side(side);
+  double length = frame->high_mm[axis] - frame->low_mm[axis];
+  double square[2] = {0, 0}, inwards = -way_out(side) * fmin(distance, 0.5 * length);
+  for (int i = 0; i < BORDER_POINTS; i++) {
+    double at[2], share = i / (BORDER_POINTS - 1.0);
+    at[axis] = border_of_side(frame->low_mm, frame->high_mm, side);
+    at[!axis] = frame->low_mm[!axis] + share * (frame->high_mm[!axis] - frame->low_mm[!axis]);
+    fg_point border = fg_map_at(frame, model->map.mm, (fg_point){at[0], at[1]});
+    at[axis] += inwards;
+    fg_point inside = fg_map_at(frame, model->map.mm, (fg_point){at[0], at[1]});
+    square[0] += pow(border.x - inside.x, 2);
+    square[1] += pow(border.y - inside.y, 2);
+  }
+  for (int k = 0; k < 2; k++)
+    change[k] = sqrt(square[k] / BORDER_POINTS) * fmax(1, distance / (0.5 * length));
+}
+
+/* Beyond its region a map keeps the border's value. It may change there as much as it does over the
+ * same distance inside. */
+static fg_status step_beyond(fg_context *ctx, const fg_scanner_model *model,
+                             const fg_measurement *m, unsigned threads,
+                             fg_model_uncertainty *uncertainty) {
+  double low[2], high[2];
+  const fg_map_frame *frame = &model->map.frame;
+  if (!model->fields.map) return FG_OK;
+  find_bounds(m, low, high);
+  for (int side = 0; side < SIDES; side++) {
+    double border = border_of_side(frame->low_mm, frame->high_mm, side);
+    double end = border_of_side(low, high, side), change[2];
+    double distance = way_out(side) * (end - border);
+    if (!(distance > 0) || model->fields.count == FG_FIELDS_MAX) continue;
+    find_change_at_border(model, side, distance, change);
+    for (int k = 0; k < 2; k++) {
+      fg_field_list moved = model->fields;
+      fg_field *field = &moved.fields[moved.count++];
+      *field = (fg_field){.id = "beyond",
+                          .basis = axis_of_side(side) ? beyond_border_y : beyond_border_x,
+                          .columns = 2,
+                          .shape = {border, end}};
+      field->amplitude_mm[k] = change[k];
+      FG_TRY(step_number(ctx, &moved, m, threads, uncertainty));
+    }
+  }
+  return FG_OK;
+}
+
 static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
                          unsigned threads, fg_model_uncertainty *uncertainty) {
   FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &uncertainty->each[uncertainty->count]));
@@ -134,6 +244,7 @@ fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *mod
   FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_modes(ctx, model, m, threads, uncertainty));
+  FG_TRY_EXIT(step_beyond(ctx, model, m, threads, uncertainty));
   for (size_t k = 0; k < model->others; k++)
     FG_TRY_EXIT(explain(ctx, &model->other[k], m, threads, uncertainty));
 exit:

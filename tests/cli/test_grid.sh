@@ -130,11 +130,64 @@ echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "certifi
 expect 0 "" "$program" loop odd.png --design certified.json -o certified_loop.json --model-out certified_model.json
 near "the scale by a certificate" "$(member certified_loop.json axis_ratio)" 1.004 0.00003
 near "the marks by a certificate" "$(python3 -c "import json; print(json.load(open('certified_loop.json'))['after']['rms'])")" 0.3 0.3
+awk -F, -v OFS=, 'NR > 1 { $1 = 11 - $1; $2 = 11 - $2; $3 = 50 - $3; $4 = 50 - $4 } { print }' plate.csv >turned.csv
+sed 's/plate.csv/turned.csv/' certified.json >turned.json
+expect 65 "turned by 180 degrees clockwise against its certificate" "$program" loop odd.png --design turned.json -o never.json
+awk -F, -v OFS=, 'NR > 1 { c = $1; x = $3; $1 = $2; $2 = 11 - c; $3 = $4; $4 = 50 - x } { print }' plate.csv >turned.csv
+expect 65 "turned by 90 degrees clockwise against its certificate" "$program" loop odd.png --design turned.json -o never.json
 head -n 100 plate.csv >short.csv
 sed 's/plate.csv/short.csv/' certified.json >short.json
 expect 65 "lay the whole plate on the glass" "$program" loop odd.png --design short.json -o never.json
 echo 'column,row,x_mm,y_mm,u_um' >short.csv; echo '0,0,0,0,0' >>short.csv
 expect 65 "u_um is 0; it must be positive" "$program" loop odd.png --design short.json -o never.json
+
+# A mark sees the mean over its edges: dots as large as half the pitch leave a ripple its size, and rows lost between a dot's edges are
+# one step. A ripple of little more than a pitch looks like a longer one: that is told.
+dots() {
+  cat >"$1.json" <<S
+{"schema": "foilgauge/render/1", "seed": 6, "scanner": {"dpi": 600}, "effects": [$3],
+ "grids": [{"marks": "dots", "centre_mm": [18, 18], "pitch_mm": 2.5, "mark_mm": 1.25, "columns": 12, "rows": 12, "rotate_deg": $2}]}
+S
+  expect 0 "" "$program" render "$1.json" -o "$1.png"
+  expect 0 "" "$program" loop "$1.png" --design pitch.json -o "$1_loop.json" --model-out "$1_model.json"
+}
+echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_mm": 2.5, "u_pitch_mm": 0.00005}' >pitch.json
+dots large 0.4 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 6.1}'
+dots alike 0 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 3.1}'
+dots step 0.4 '{"id": "scan.row_step", "amplitude_um": 20, "y_mm": 16.6}'
+python3 - <<'P' || fail "ripples and steps on large dots"
+import json
+found = lambda name: [c for c in json.load(open(name + '_loop.json'))['claims'] if c['verdict'] == 'found']
+ripple, = found('large')
+assert ripple['id'] == 'scan.carriage_ripple' and abs(ripple['shape_mm'] - 6.1) < 0.01, ripple
+assert abs(ripple['amplitude_um'] - 8) < 4 * ripple['u_amplitude_um'] + 0.02, ripple
+step, = found('step')
+assert step['id'] == 'scan.row_step' and abs(step['amplitude_um'] - 20) < 0.2, step
+assert 'a ripple of 3.1 mm looks like' in json.load(open('alike_loop.json'))['advice'], found('alike')
+P
+# The same marks through the model: none of the ripple is left.
+expect 0 "" "$program" measure large.png --design pitch.json --model large_model.json -o large_corrected.json
+near "marks through the model of a ripple" "$(member large_corrected.json rms_um)" 0 0.3
+
+# Beyond the map of a plate U holds the changes that the map has inside.
+cat >part.json <<S
+{"schema": "foilgauge/render/1", "seed": 4, "scanner": {"dpi": 600},
+ "effects": [{"id": "free.scan.x", "knots": [[0, 0], [8, 12], [15, -9], [23, 8], [30, -12]]}],
+ "grids": [{"marks": "dots", "centre_mm": [12, 18], "pitch_mm": 2.5, "mark_mm": 0.8, "columns": 8, "rows": 12, "rotate_deg": 1}]}
+S
+sed '/"grids"/d; s/"effects": \(.*\),$/"effects": \1, "width_px": 800, "height_px": 850,\n "discs": [{"centre_mm": [12, 18], "radius_mm": 5}, {"centre_mm": [24, 18], "radius_mm": 5}]}/' part.json >beyond.json
+expect 0 "" "$program" render part.json -o part.png
+expect 0 "" "$program" render beyond.json -o beyond.png
+expect 0 "" "$program" loop part.png --design pitch.json -o part_loop.json --model-out part_model.json
+expect 0 "" "$program" measure beyond.png --form discs --tone linear --model part_model.json -o beyond_discs.json
+python3 - <<'P' || fail "U of a pin beyond the map"
+import json
+inside, beyond = sorted(json.load(open('beyond_discs.json'))['discs'], key=lambda d: d['centre_mm'][0])
+for d in (inside, beyond):
+    assert abs(d['radius_mm'] - 5) < 2.5 * d['u_radius_mm'], d
+assert beyond['u_radius_mm'] > 1.5 * inside['u_radius_mm'] > 0, (inside, beyond)
+assert 'beyond_model_region' in beyond['flags'] and not inside['flags'], (inside['flags'], beyond['flags'])
+P
 
 # Names are for displacements that no map follows: tilted chips with gaps, and a ripple whose period is as uncertain as the marks make it.
 spec chips.json dots 1.5 4 '{"id": "scan.chip_tilt", "amplitude_um": 12, "x_mm": 4, "pitch_mm": 10}, {"id": "scan.chip_gap",
@@ -150,12 +203,14 @@ for name, size in (('scan.chip_tilt', 12), ('scan.chip_gap', 9), ('scan.carriage
     assert abs(abs(claims[name]['amplitude_um']) - size) < 1.5, claims[name]  # marks that lie across a seam shrink it
 assert abs(claims['scan.carriage_ripple']['shape_mm'] - 8.5) < 0.05, claims['scan.carriage_ripple']
 " || fail "chips and a ripple are not named with their sizes"
-# A seam lies anywhere between two marks of 3 mm: so does it in the model, and what lies there has that in its u.
+# A seam lies anywhere between two marks of 3 mm, or within one that it cuts: so does it in the model, and what lies there has that in
+# its u.
 python3 -c "
 import json
-places = {f['id']: f['u_shape'] for f in json.load(open('chips_model.json'))['fields'] if f['id'].startswith('scan.c')}
+fields = {f['id']: f for f in json.load(open('chips_model.json'))['fields']}
 for name in ('scan.chip_tilt', 'scan.chip_gap'):
-    assert 0.5 < places[name][0] < 1.1, places
-assert places['scan.carriage_ripple'][0] == 0, places
+    (place, pitch), (u, _) = fields[name]['shape'], fields[name]['u_shape']
+    assert 0.08 < u < 1.1 and abs((place - 4 + pitch / 2) % pitch - pitch / 2) < 2.5 * u, fields[name]
+assert fields['scan.carriage_ripple']['u_shape'][0] == 0, fields['scan.carriage_ripple']
 " || fail "the model does not say how well the place of a seam is known"
 exit $failed
