@@ -75,7 +75,8 @@ typedef struct fg_regression {
   double condition_number;   /* of the matrix with columns of equal length */
 
   fg_anova_row *sequential; /* terms: each after the ones above it (type I) */
-  fg_anova_row *partial;    /* terms: each after all others, in this coding (type III) */
+  fg_anova_row *partial; /* terms: each after all others (type III): numbers in this coding, words
+                            with equal weights of their levels */
   size_t terms;
 
   size_t lack_dof, pure_dof; /* pure_dof 0: no repeated runs */
