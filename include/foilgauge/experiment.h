@@ -149,6 +149,16 @@ typedef struct fg_order_check {
   double farthest_t, farthest_p; /* p over all runs (Bonferroni) */
 } fg_order_check;
 
+/* Quantiles of the largest share that the random error of the coefficients, and of these and a new
+ * run, reaches in any prediction in the region of the runs: by them intervals hold at every setting
+ * there at once. `rank`: number of estimated coefficients; 0: not known. */
+enum { FG_SIMULTANEOUS_NODES = 32 };
+typedef struct fg_simultaneous {
+  size_t rank;
+  double share[FG_SIMULTANEOUS_NODES], run_share[FG_SIMULTANEOUS_NODES];
+  double dof, run_dof, factor, run_factor; /* coverage factors in the middle of the region */
+} fg_simultaneous;
+
 typedef struct fg_experiment fg_experiment;
 struct fg_experiment {
   fg_table table;           /* as analysed: coded, sign applied */
@@ -188,6 +198,7 @@ struct fg_experiment {
   fg_region region;  /* box and ball of the runs, and the constraints */
   char **constraint; /* as given */
   size_t constraints;
+  fg_simultaneous simultaneous;
   double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
   fg_optimum optimum;
   /* Best feasible setting near the optimum: every factor with a step at a multiple of it, all in

@@ -113,6 +113,8 @@ typedef struct fg_prediction {
   double mean, standard_error, run_standard_error;
   double low, high;         /* confidence interval of the mean */
   double run_low, run_high; /* prediction interval of one run */
+  double coverage_factor;   /* half of the mean's interval over the standard error */
+  double dof, run_dof;      /* of the two standard errors */
 } fg_prediction;
 fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression, const double *row,
                                 fg_prediction *prediction);
