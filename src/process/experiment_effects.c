@@ -105,8 +105,13 @@ static void fill_effect(const fg_experiment *e, size_t j, double *row,
   effect->relative_pct = c->term == FG_MODEL_CONSTANT ? NAN : fg_doe_relative_effect_pct(reg, j);
   if (c->aliased) return;
   effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
-  if (!e->has_split_plot) return;
+  if (!e->has_split_plot && !e->weight) return;
   effect->standard_error = sd * sqrt(variance);
+  if (e->weight) {
+    row[j] = 1;
+    effect->dof = fg_experiment_weighted_dof(e, row);
+    row[j] = 0;
+  }
   if (e->split_plot.mixed) judge_mixed(e, j, row, effect);
   effect->t = c->estimate / effect->standard_error;
   effect->p_value = fg_distribution_t_two_sided(effect->t, effect->dof);
@@ -336,6 +341,7 @@ static void predict_row(const fg_experiment *e, const double *row, double *direc
     variance += direction[k] * direction[k];
     if (!reg->coefficient[k].aliased) p->mean += row[k] * reg->coefficient[k].estimate;
   }
+  if (e->weight) min_dof = fg_experiment_weighted_dof(e, row);
   double run_variance = reg->residual_sd * reg->residual_sd;
   if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;
   p->standard_error = sqrt(variance);

@@ -12,6 +12,9 @@ fg_status fg_experiment_note(fg_context *ctx, fg_experiment *experiment, const c
 fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *experiment,
                               const fg_extended *response);
 
+/* Returns the dof of row · b in a weighted fit. */
+double fg_experiment_weighted_dof(const fg_experiment *experiment, const double *row);
+
 /* Computes split plots, coefficients by stratum, Lenth, Box-Cox, curvature, and the measurement's
  * contribution. */
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
