@@ -27,7 +27,7 @@ fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *experiment);
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
                                 const fg_experiment *whole, fg_experiment *experiment);
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
-                                 fg_experiment *experiment);
+                                 const fg_experiment *whole, fg_experiment *experiment);
 
 /* Predicts the response at the requested settings. */
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
@@ -63,10 +63,11 @@ double fg_experiment_direction(const fg_experiment *experiment, const double *ro
  */
 bool fg_experiment_next_levels(const fg_experiment *experiment, double *setting);
 
-/* Computes what makes intervals simultaneous over the region; then gives a prediction at a place of
- * the surface its simultaneous intervals. Outside the region of the runs they hold everywhere
- * (Scheffé 1953). */
-fg_status fg_experiment_simultaneous(fg_context *ctx, fg_experiment *experiment);
+/* Computes what makes intervals simultaneous over the region, of the model with all factors where
+ * the runs chose this one out of it; then gives a prediction at a place of the surface its
+ * simultaneous intervals. Outside the region of the runs they hold everywhere (Scheffé 1953). */
+fg_status fg_experiment_simultaneous(fg_context *ctx, const fg_experiment *whole,
+                                     fg_experiment *experiment);
 void fg_experiment_widen(const fg_experiment *experiment, const double *x,
                          fg_prediction *prediction);
 

@@ -232,17 +232,20 @@ static fg_status find_middle_coverage(fg_context *ctx, const fg_experiment *e, f
 }
 
 /* The shares stay 1, and the interval is Scheffé's, where the settings are too many. */
-fg_status fg_experiment_simultaneous(fg_context *ctx, fg_experiment *e) {
+fg_status fg_experiment_simultaneous(fg_context *ctx, const fg_experiment *whole,
+                                     fg_experiment *e) {
   fg_simultaneous *simultaneous = &e->simultaneous;
-  settings s = {.e = e, .region = e->region, .columns = e->regression.columns};
+  const fg_experiment *chosen_from = whole ? whole : e;
+  settings s = {
+      .e = chosen_from, .region = chosen_from->region, .columns = chosen_from->regression.columns};
   *simultaneous = (fg_simultaneous){.rank = 0};
   s.region.planes = 0;
   for (size_t j = 0; j < s.columns; j++)
-    simultaneous->rank += is_estimated(e, j);
+    simultaneous->rank += is_estimated(chosen_from, j);
   for (size_t n = 0; n < NODES; n++)
     simultaneous->share[n] = simultaneous->run_share[n] = 1;
-  bool few = e->surface.factors <= CORNER_FACTORS && s.columns <= COLUMNS_MAX &&
-             count_combinations(e) <= POINTS / POINTS_MIN;
+  bool few = chosen_from->surface.factors <= CORNER_FACTORS && s.columns <= COLUMNS_MAX &&
+             count_combinations(chosen_from) <= POINTS / POINTS_MIN;
   fg_status status = few ? compute_shares(ctx, &s, simultaneous) : FG_OK;
   free(s.root);
   free(s.row);

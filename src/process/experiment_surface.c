@@ -212,9 +212,9 @@ fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *op
 }
 
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
-                                 fg_experiment *e) {
+                                 const fg_experiment *whole, fg_experiment *e) {
   if (!e->has_surface) return FG_OK;
-  FG_TRY(fg_experiment_simultaneous(ctx, e));
+  FG_TRY(fg_experiment_simultaneous(ctx, whole, e));
   FG_TRY(find_optimum(ctx, e));
   FG_TRY(fg_experiment_round(ctx, options, e));
   FG_TRY(judge_stationary(ctx, e));
