@@ -10,7 +10,7 @@
 #include "foilgauge/experiment.h"
 #include "support/random.h"
 
-enum { FACTORS_MAX = 3, RUNS_MAX = 32, MODELS = 4, SDS = 5, GOALS = 2 };
+enum { FACTORS_MAX = 3, RUNS_MAX = 32, MODELS = 4, SDS = 4, GOALS = 2 };
 
 static const char *const names[FACTORS_MAX] = {"a", "b", "c"};
 
@@ -129,7 +129,7 @@ static double percent(size_t part, size_t all) {
 }
 
 int main(int count, char **words) {
-  static const double sds[SDS] = {0.1, 0.3, 1, 2, 3};
+  static const double sds[SDS] = {0.1, 0.3, 1, 2};
   static const fg_goal goals[GOALS] = {FG_GOAL_LOWEST, FG_GOAL_TARGET};
   size_t experiments = count > 1 ? strtoul(words[1], NULL, 10) : 1000;
   printf(
