@@ -252,6 +252,14 @@ static fg_status make_box_cox(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
+static bool has_words(const fg_experiment *e) {
+  for (size_t v = 0; v < e->model.formula.variables; v++)
+    if (e->model.levels[v].count) return true;
+  return false;
+}
+
+/* The comparison of centre runs with corners knows the numbers alone: differences between blocks or
+ * other words would be taken for curvature, or for its error. */
 static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   const char *names[FG_FORMULA_VARIABLES];
   fg_context quiet = {0};
@@ -262,8 +270,12 @@ static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   fg_status status =
       fg_curvature_compute(&quiet, &e->table, names, count, e->response, &e->curvature);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", quiet.message);
-  e->has_curvature = status == FG_OK;
-  return FG_OK;
+  e->has_curvature = status == FG_OK && !has_words(e);
+  if (status != FG_OK || e->has_curvature) return FG_OK;
+  return fg_experiment_note(ctx, e,
+                            "the centre runs are not compared with the corners, as the blocks or "
+                            "other words of the model may make the difference: the lack of fit, "
+                            "which has them, tells of curvature where settings repeat");
 }
 
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *e) {

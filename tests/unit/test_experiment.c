@@ -197,6 +197,31 @@ static void intervals_of_unequal_runs_hold(void **state) {
   assert_true((double)held > 0.94 * 2 * TABLES);
 }
 
+/* All centre runs are of a day whose runs are higher: no curvature. */
+static void blocks_are_no_curvature(void **state) {
+  static const char *const runs =
+      "a,b,day,y\n-1,-1,Mon,49.1\n-1,-1,Mon,48.7\n-1,1,Mon,47.2\n-1,1,Mon,46.9\n1,-1,Mon,53.2\n"
+      "1,-1,Tue,56.8\n1,1,Tue,55.1\n1,1,Tue,54.8\n0,0,Tue,54.1\n0,0,Tue,53.8\n0,0,Tue,54.3\n";
+  const fg_experiment_options options = {.response = "y", .formula = "a + b", .block = "day"};
+  const fg_experiment_options without = {.response = "y", .formula = "a + b"};
+  fg_context ctx = {0};
+  fg_table table = {0};
+  fg_experiment e;
+  size_t told = 0;
+  (void)state;
+  assert_ok(&ctx, fg_table_parse(&ctx, "runs", runs, strlen(runs), &table));
+  assert_ok(&ctx, fg_experiment_analyse(&ctx, &table, &options, &e));
+  assert_false(e.has_curvature);
+  for (size_t i = 0; i < e.notes; i++)
+    told += strstr(e.note[i], "the centre runs are not compared") != NULL;
+  assert_int_equal(told, 1);
+  fg_experiment_free(&e);
+  assert_ok(&ctx, fg_experiment_analyse(&ctx, &table, &without, &e));
+  assert_true(e.has_curvature);
+  fg_experiment_free(&e);
+  fg_table_free(&table);
+}
+
 /* With one uncertainty for all, u of a coefficient is u / sqrt(n), and nothing is weighed. */
 static void measurement_is_propagated(void **state) {
   fg_table table;
@@ -237,6 +262,7 @@ int main(void) {
       cmocka_unit_test(uncertain_runs_weigh_less),
       cmocka_unit_test(dof_is_that_of_the_precise_runs),
       cmocka_unit_test(intervals_of_unequal_runs_hold),
+      cmocka_unit_test(blocks_are_no_curvature),
       cmocka_unit_test(measurement_is_propagated),
       cmocka_unit_test(predictions_agree),
   };
