@@ -9,9 +9,9 @@
  * is tested against the error of its own stratum, or where runs are missing by restricted
  * likelihood (doe.h), which then also gives coefficients, fitted values and residuals.
  *
- * Where the uncertainty of the responses differs much between runs (some u above twice the median
- * and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with s, the scatter of the
- * process, such that the weighted sum of squares equals its dof (Mandel and Paule 1970); split
+ * Where the uncertainty of the responses differs much between runs (some u above twice the lower
+ * quartile and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with s, the scatter of
+ * the process by restricted likelihood, and Satterthwaite's dof, by which the runs tell s; split
  * plots are not weighed.
  *
  * A value that cannot be computed is NaN; a note has the reason and the conclusions that remain
@@ -149,6 +149,16 @@ typedef struct fg_order_check {
   double farthest_t, farthest_p; /* p over all runs (Bonferroni) */
 } fg_order_check;
 
+/* Quantiles of the largest share that the random error of the coefficients, and of these and a new
+ * run, reaches in any prediction in the region of the runs: by them intervals hold at every setting
+ * there at once. `rank`: number of estimated coefficients; 0: not known. */
+enum { FG_SIMULTANEOUS_NODES = 32 };
+typedef struct fg_simultaneous {
+  size_t rank;
+  double share[FG_SIMULTANEOUS_NODES], run_share[FG_SIMULTANEOUS_NODES];
+  double dof, run_dof, factor, run_factor; /* coverage factors in the middle of the region */
+} fg_simultaneous;
+
 typedef struct fg_experiment fg_experiment;
 struct fg_experiment {
   fg_table table;           /* as analysed: coded, sign applied */
@@ -162,11 +172,13 @@ struct fg_experiment {
   fg_experiment_effect *effect; /* per column of the regression */
   fg_factor factor[FG_FORMULA_VARIABLES];
   size_t factors;
-  double *setting;   /* rows × model.formula.variables: every run for predictions */
-  double *u;         /* rows: of the response; NULL: not known */
-  double u_rms;      /* NaN: not known */
-  double *weight;    /* rows: 1 / (process² + u²) over the median; NULL: all equal */
-  double process_sd; /* scatter besides the measurement's; NaN: not separated */
+  double *setting; /* rows × model.formula.variables: every run for predictions */
+  double *u;       /* rows: of the response; NULL: not known */
+  double u_rms;    /* NaN: not known */
+  double *weight;  /* rows: 1 / (process² + u²) over the median; NULL: all equal */
+  double *weight_gram, weight_trace; /* how well the weighted runs tell the scatter: see
+                                        src/process/experiment_weights.c */
+  double process_sd;                 /* scatter besides the measurement's; NaN: not separated */
   fg_experiment_taken *taken;
   size_t takens,
       dof_taken;     /* parameters of subtracted effects, by which the residual dof is lowered */
@@ -188,6 +200,7 @@ struct fg_experiment {
   fg_region region;  /* box and ball of the runs, and the constraints */
   char **constraint; /* as given */
   size_t constraints;
+  fg_simultaneous simultaneous;
   double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
   fg_optimum optimum;
   /* Best feasible setting near the optimum: every factor with a step at a multiple of it, all in

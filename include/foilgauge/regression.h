@@ -75,7 +75,8 @@ typedef struct fg_regression {
   double condition_number;   /* of the matrix with columns of equal length */
 
   fg_anova_row *sequential; /* terms: each after the ones above it (type I) */
-  fg_anova_row *partial;    /* terms: each after all others, in this coding (type III) */
+  fg_anova_row *partial; /* terms: each after all others (type III): numbers in this coding, words
+                            with equal weights of their levels */
   size_t terms;
 
   size_t lack_dof, pure_dof; /* pure_dof 0: no repeated runs */
@@ -112,6 +113,8 @@ typedef struct fg_prediction {
   double mean, standard_error, run_standard_error;
   double low, high;         /* confidence interval of the mean */
   double run_low, run_high; /* prediction interval of one run */
+  double coverage_factor;   /* half of the mean's interval over the standard error */
+  double dof, run_dof;      /* of the two standard errors */
 } fg_prediction;
 fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression, const double *row,
                                 fg_prediction *prediction);

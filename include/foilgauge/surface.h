@@ -78,6 +78,9 @@ bool fg_region_contains(const fg_region *region, const double *x, double toleran
 /* Moves x to the nearest point of the region (Dykstra 1983). FG_ERR_USAGE when the region is empty.
  */
 fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x);
+/* Writes point `index` of an even cover of the region: Halton's sequence over the box, projected.
+ */
+void fg_region_scatter(const fg_region *region, size_t index, double *x);
 /* Writes the region in coordinates (x - centre) / scale: without a ball, half ranges of the
  * factors, whose units may differ by many powers of ten; with a ball, whose factors have one
  * unit, 1. */

@@ -296,7 +296,7 @@ static fg_status analyse(fg_context *ctx, const fg_table *runs,
   FG_TRY(fg_experiment_fit(ctx, runs, options, e));
   FG_TRY(fg_experiment_surface(ctx, options, NULL, e));
   FG_TRY(fg_experiment_reduce(ctx, runs, options, e));
-  FG_TRY(fg_experiment_optimise(ctx, options, e));
+  FG_TRY(fg_experiment_optimise(ctx, options, NULL, e));
   return fg_experiment_ask(ctx, options, e);
 }
 

@@ -105,8 +105,13 @@ static void fill_effect(const fg_experiment *e, size_t j, double *row,
   effect->relative_pct = c->term == FG_MODEL_CONSTANT ? NAN : fg_doe_relative_effect_pct(reg, j);
   if (c->aliased) return;
   effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
-  if (!e->has_split_plot) return;
+  if (!e->has_split_plot && !e->weight) return;
   effect->standard_error = sd * sqrt(variance);
+  if (e->weight) {
+    row[j] = 1;
+    effect->dof = fg_experiment_weighted_dof(e, row);
+    row[j] = 0;
+  }
   if (e->split_plot.mixed) judge_mixed(e, j, row, effect);
   effect->t = c->estimate / effect->standard_error;
   effect->p_value = fg_distribution_t_two_sided(effect->t, effect->dof);
@@ -247,6 +252,14 @@ static fg_status make_box_cox(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
+static bool has_words(const fg_experiment *e) {
+  for (size_t v = 0; v < e->model.formula.variables; v++)
+    if (e->model.levels[v].count) return true;
+  return false;
+}
+
+/* The comparison of centre runs with corners knows the numbers alone: differences between blocks or
+ * other words would be taken for curvature, or for its error. */
 static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   const char *names[FG_FORMULA_VARIABLES];
   fg_context quiet = {0};
@@ -257,8 +270,12 @@ static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   fg_status status =
       fg_curvature_compute(&quiet, &e->table, names, count, e->response, &e->curvature);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", quiet.message);
-  e->has_curvature = status == FG_OK;
-  return FG_OK;
+  e->has_curvature = status == FG_OK && !has_words(e);
+  if (status != FG_OK || e->has_curvature) return FG_OK;
+  return fg_experiment_note(ctx, e,
+                            "the centre runs are not compared with the corners, as the blocks or "
+                            "other words of the model may make the difference: the lack of fit, "
+                            "which has them, tells of curvature where settings repeat");
 }
 
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *e) {
@@ -291,6 +308,9 @@ static fg_status average_row(fg_context *ctx, const fg_experiment *e, const doub
 static void fill_intervals(const fg_experiment *e, double dof, double run_dof, fg_prediction *p) {
   double q = fg_distribution_t_quantile((1 + e->confidence) / 2, dof),
          run = fg_distribution_t_quantile((1 + e->confidence) / 2, run_dof);
+  p->coverage_factor = q;
+  p->dof = dof;
+  p->run_dof = run_dof;
   p->low = p->mean - q * p->standard_error;
   p->high = p->mean + q * p->standard_error;
   p->run_low = p->mean - run * p->run_standard_error;
@@ -308,23 +328,32 @@ static void predict_mixed(const fg_experiment *e, const double *row, fg_predicti
   fill_intervals(e, dof, run_dof, p);
 }
 
-/* Var(row b) = |U' (row × sd of each column's stratum)|². */
-static void predict_row(const fg_experiment *e, const double *row, fg_prediction *p) {
+/* U' (row × sd of each column's stratum). */
+double fg_experiment_direction(const fg_experiment *e, const double *row, double *direction) {
   const fg_regression *reg = &e->regression;
-  double variance = 0, min_dof = INFINITY;
+  double min_dof = INFINITY;
+  memset(direction, 0, reg->columns * sizeof *direction);
+  for (size_t j = 0; j < reg->columns; j++) {
+    double dof;
+    if (reg->coefficient[j].aliased || row[j] == 0) continue;
+    double sd = error_of(e, e->effect[j].whole_plot, &dof);
+    min_dof = fmin(min_dof, dof);
+    for (size_t k = 0; k < reg->columns; k++)
+      direction[k] += reg->inverse_root[j * reg->columns + k].value * row[j] * sd;
+  }
+  return min_dof;
+}
+
+static void predict_row(const fg_experiment *e, const double *row, double *direction,
+                        fg_prediction *p) {
+  const fg_regression *reg = &e->regression;
+  double variance = 0, min_dof = fg_experiment_direction(e, row, direction);
   *p = (fg_prediction){0};
   for (size_t k = 0; k < reg->columns; k++) {
-    double along = 0;
-    for (size_t j = 0; j < reg->columns; j++) {
-      double dof;
-      if (reg->coefficient[j].aliased || row[j] == 0) continue;
-      double sd = error_of(e, e->effect[j].whole_plot, &dof);
-      min_dof = fmin(min_dof, dof);
-      along += reg->inverse_root[j * reg->columns + k].value * row[j] * sd;
-    }
-    variance += along * along;
+    variance += direction[k] * direction[k];
     if (!reg->coefficient[k].aliased) p->mean += row[k] * reg->coefficient[k].estimate;
   }
+  if (e->weight) min_dof = fg_experiment_weighted_dof(e, row);
   double run_variance = reg->residual_sd * reg->residual_sd;
   if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;
   p->standard_error = sqrt(variance);
@@ -332,13 +361,25 @@ static void predict_row(const fg_experiment *e, const double *row, fg_prediction
   fill_intervals(e, min_dof, min_dof, p);
 }
 
+fg_status fg_experiment_row(fg_context *ctx, const fg_experiment *e, const double *setting,
+                            double *row) {
+  double *one = NULL;
+  FG_TRY(fg_memory_allocate(ctx, e->model.columns, sizeof *one, (void **)&one));
+  fg_status status = average_row(ctx, e, setting, row, one);
+  free(one);
+  return status;
+}
+
 fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *e, const double *setting,
                                 fg_prediction *prediction) {
   double *row = NULL;
   FG_TRY(fg_memory_allocate(ctx, 2 * e->model.columns, sizeof *row, (void **)&row));
-  fg_status status = average_row(ctx, e, setting, row, row + e->model.columns);
-  if (status == FG_OK)
-    (e->has_split_plot && e->split_plot.mixed ? predict_mixed : predict_row)(e, row, prediction);
+  double *work = row + e->model.columns;
+  fg_status status = average_row(ctx, e, setting, row, work);
+  if (status == FG_OK && e->has_split_plot && e->split_plot.mixed)
+    predict_mixed(e, row, prediction);
+  else if (status == FG_OK)
+    predict_row(e, row, work, prediction);
   free(row);
   return status;
 }

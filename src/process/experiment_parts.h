@@ -12,6 +12,9 @@ fg_status fg_experiment_note(fg_context *ctx, fg_experiment *experiment, const c
 fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *experiment,
                               const fg_extended *response);
 
+/* Returns the dof of row · b in a weighted fit. */
+double fg_experiment_weighted_dof(const fg_experiment *experiment, const double *row);
+
 /* Computes split plots, coefficients by stratum, Lenth, Box-Cox, curvature, and the measurement's
  * contribution. */
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
@@ -24,7 +27,7 @@ fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *experiment);
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
                                 const fg_experiment *whole, fg_experiment *experiment);
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
-                                 fg_experiment *experiment);
+                                 const fg_experiment *whole, fg_experiment *experiment);
 
 /* Predicts the response at the requested settings. */
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
@@ -46,7 +49,30 @@ void fg_experiment_take_constraints(const fg_experiment *whole, fg_experiment *e
 fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experiment,
                                   const char *text, fg_region *region);
 
-/* Predicts the response at a place of the surface; tests whether a place is on the border. */
+/* Model row of a setting, averaged over the blocks. */
+fg_status fg_experiment_row(fg_context *ctx, const fg_experiment *experiment, const double *setting,
+                            double *row);
+
+/* Writes the random error of a row's prediction as a sum over independent standard normal errors,
+ * one per column: |direction| is the standard error. Not for restricted likelihood. Returns the
+ * smallest dof. */
+double fg_experiment_direction(const fg_experiment *experiment, const double *row,
+                               double *direction);
+
+/* Sets the next combination of levels of the word factors that are no blocks; false after the last.
+ */
+bool fg_experiment_next_levels(const fg_experiment *experiment, double *setting);
+
+/* Computes what makes intervals simultaneous over the region, of the model with all factors where
+ * the runs chose this one out of it; then gives a prediction at a place of the surface its
+ * simultaneous intervals. Outside the region of the runs they hold everywhere (Scheffé 1953). */
+fg_status fg_experiment_simultaneous(fg_context *ctx, const fg_experiment *whole,
+                                     fg_experiment *experiment);
+void fg_experiment_widen(const fg_experiment *experiment, const double *x,
+                         fg_prediction *prediction);
+
+/* Predicts the response at a place of the surface, with simultaneous intervals; tests whether a
+ * place is on the border. */
 fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *experiment,
                                    const double *x, fg_prediction *prediction);
 /* FG_ERR_USAGE: an effect of the factors was subtracted, without which no response is predicted. */

@@ -194,7 +194,7 @@ static fg_status analyse_without(fg_context *ctx, const fg_table *runs,
   FG_TRY(fg_experiment_fit(ctx, runs, &options, e->reduced));
   size_t known = e->reduced->notes;
   FG_TRY(fg_experiment_surface(ctx, &options, e, e->reduced));
-  FG_TRY(fg_experiment_optimise(ctx, &options, e->reduced));
+  FG_TRY(fg_experiment_optimise(ctx, &options, e, e->reduced));
   for (size_t i = known; i < e->reduced->notes; i++)
     FG_TRY(fg_experiment_note(ctx, e, "%s", e->reduced->note[i]));
   return FG_OK;

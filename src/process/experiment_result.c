@@ -43,6 +43,7 @@ void fg_experiment_free(fg_experiment *e) {
   free(e->setting);
   free(e->u);
   free(e->weight);
+  free(e->weight_gram);
   free(e->taken);
   free(e->taken_out);
   free(e->order_value);

@@ -73,7 +73,9 @@ fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *e, cons
   memcpy(setting, e->best_setting, sizeof setting);
   for (size_t k = 0; k < e->surface.factors; k++)
     setting[e->surface.variable[k]] = x[k];
-  return fg_experiment_predict(ctx, e, setting, prediction);
+  FG_TRY(fg_experiment_predict(ctx, e, setting, prediction));
+  fg_experiment_widen(e, x, prediction);
+  return FG_OK;
 }
 
 /* On its sphere or box side or half-space: a little outwards it would be out. */
@@ -95,8 +97,7 @@ bool fg_experiment_on_border(const fg_region *region, const double *x) {
   return false;
 }
 
-/* The next combination of levels of the word factors that are no blocks; false after the last. */
-static bool next_levels(const fg_experiment *e, double *setting) {
+bool fg_experiment_next_levels(const fg_experiment *e, double *setting) {
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     if (e->model.levels[v].count == 0 || v == e->block_variable) continue;
     setting[v] += 1;
@@ -141,7 +142,7 @@ static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
     } else {
       memcpy(e->best_setting, kept, sizeof kept);
     }
-  } while (++tried < COMBINATIONS && next_levels(e, levels));
+  } while (++tried < COMBINATIONS && fg_experiment_next_levels(e, levels));
   fg_region runs = e->region;
   runs.planes = 0;
   e->optimum.on_border = fg_experiment_on_border(&e->region, e->optimum.x);
@@ -211,8 +212,9 @@ fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *op
 }
 
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
-                                 fg_experiment *e) {
+                                 const fg_experiment *whole, fg_experiment *e) {
   if (!e->has_surface) return FG_OK;
+  FG_TRY(fg_experiment_simultaneous(ctx, whole, e));
   FG_TRY(find_optimum(ctx, e));
   FG_TRY(fg_experiment_round(ctx, options, e));
   FG_TRY(judge_stationary(ctx, e));

@@ -63,6 +63,29 @@ static void project_on(const fg_region *r, size_t set, double *x) {
   }
 }
 
+/* Box and ball alone. By the conditions of Karush, Kuhn and Tucker the nearest point is that of the
+ * box to centre + share (x - centre), with the largest share that is in the ball. Dykstra's
+ * algorithm converges slowly there: the ball touches the box where axial runs are the farthest. */
+static void project_on_box_and_ball(const fg_region *r, double *x) {
+  double given[MAX], inside = 0, outside = 1;
+  memcpy(given, x, r->factors * sizeof *x);
+  project_on(r, 0, x);
+  if (distance_between(x, r->centre, r->factors) <= r->radius) return;
+  while (outside - inside > 1e-15) {
+    double share = (inside + outside) / 2;
+    for (size_t i = 0; i < r->factors; i++)
+      x[i] = r->centre[i] + share * (given[i] - r->centre[i]);
+    project_on(r, 0, x);
+    if (distance_between(x, r->centre, r->factors) <= r->radius)
+      inside = share;
+    else
+      outside = share;
+  }
+  for (size_t i = 0; i < r->factors; i++)
+    x[i] = r->centre[i] + inside * (given[i] - r->centre[i]);
+  project_on(r, 0, x);
+}
+
 /* Dykstra (1983): each set's previous correction is added back before its next projection. The
  * point may stay constant for many sweeps while the corrections still change, so the corrections
  * must converge (Birgin and Raydan 2005). */
@@ -71,6 +94,10 @@ static void project(const fg_region *r, double *x) {
   size_t sets = r->planes + 2;
   double converged = 1e-13 * size_of(r);
   if (fg_region_contains(r, x, 0)) return;
+  if (!r->planes) {
+    project_on_box_and_ball(r, x);
+    return;
+  }
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
     double change = 0;
     for (size_t s = 0; s < sets; s++) {
@@ -187,7 +214,7 @@ static double halton(size_t index, unsigned base) {
   return result;
 }
 
-static void scattered_point(const fg_region *r, size_t index, double *x) {
+void fg_region_scatter(const fg_region *r, size_t index, double *x) {
   static const unsigned primes[MAX] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
   for (size_t i = 0; i < r->factors; i++)
     x[i] = r->low[i] + (r->high[i] - r->low[i]) * halton(index + 1, primes[i]);
@@ -236,7 +263,7 @@ static fg_status search_region(fg_context *ctx, const fg_surface *surface, fg_go
   memcpy(s.x, region->centre, sizeof s.x);
   FG_TRY(fg_region_project(ctx, region, s.x));
   for (size_t i = 0; i < SCATTERED; i++) {
-    scattered_point(region, i, s.x);
+    fg_region_scatter(region, i, s.x);
     s.cost = cost(&o, s.x);
     spread = fmax(spread, fabs(s.cost));
     keep_start(starts, &count, &s);

@@ -52,29 +52,80 @@ static fg_extended wald(fg_extended *c, fg_extended *b, size_t n) {
   return sum;
 }
 
+static bool has_part(const fg_model_column *column, const fg_part *part) {
+  for (size_t k = 0; k < column->parts; k++)
+    if (column->part[k].variable == part->variable && column->part[k].level == part->level &&
+        column->part[k].power == part->power)
+      return true;
+  return false;
+}
+
+/* Share of column `other` in the mean of `column` over the levels of the words that `other` has
+ * besides: a product of 1 / levels; 0: `other` is no such product. The first levels, which have no
+ * column, count in the mean with 0. */
+static double share_in_mean(const fg_model *model, const fg_model_column *column,
+                            const fg_model_column *other) {
+  double share = 1;
+  size_t common = 0;
+  for (size_t k = 0; k < other->parts; k++) {
+    const fg_part *part = &other->part[k];
+    if (has_part(column, part))
+      common++;
+    else if (part->level == FG_PART_NUMBER)
+      return 0;
+    else
+      share /= (double)model->levels[part->variable].count;
+  }
+  return common == column->parts ? share : 0;
+}
+
+/* Adds up the coefficients, and rows of U of their covariance, to the mean over levels. */
+static void average_over_levels(const fg_fit *fit, const fg_regression *reg, size_t column,
+                                fg_extended *estimate, fg_extended *row) {
+  const fg_orthogonal *s = &fit->solution;
+  const fg_model_column *columns = fit->model->column;
+  *estimate = (fg_extended){0, 0};
+  for (size_t i = 0; i < s->columns; i++)
+    row[i] = (fg_extended){0, 0};
+  for (size_t k = 0; k < s->rank; k++) {
+    size_t other = s->kept[k];
+    double share = share_in_mean(fit->model, &columns[column], &columns[other]);
+    if (share == 0) continue;
+    fg_extended weight = fg_extended_of(share);
+    *estimate =
+        fg_extended_add(*estimate, fg_extended_multiply(weight, reg->estimate_extended[other]));
+    for (size_t i = 0; i < s->columns; i++)
+      row[i] =
+          fg_extended_add(row[i], fg_extended_multiply(weight, s->inverse[other * s->columns + i]));
+  }
+}
+
+/* Coefficients beside interactions with words are those of the first levels; the term is tested by
+ * their means over all levels, as with contrasts that add up to zero. */
 static fg_status partial_row(fg_context *ctx, const fg_fit *fit, const fg_regression *reg,
                              size_t term, fg_anova_row *row) {
   fg_status status = FG_OK;
   const fg_orthogonal *s = &fit->solution;
   size_t n = 0, *member = NULL;
-  fg_extended *c = NULL, *b = NULL;
+  fg_extended *c = NULL, *b = NULL, *u = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, s->rank, sizeof *member, (void **)&member));
   for (size_t k = 0; k < s->rank; k++)
     if (fit->model->column[s->kept[k]].term == term) member[n++] = s->kept[k];
   FG_TRY_EXIT(fg_memory_allocate(ctx, n * n, sizeof *c, (void **)&c));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *b, (void **)&b));
-  for (size_t i = 0; i < n; i++) {
-    b[i] = reg->estimate_extended[member[i]];
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n * s->columns, sizeof *u, (void **)&u));
+  for (size_t i = 0; i < n; i++)
+    average_over_levels(fit, reg, member[i], &b[i], u + i * s->columns);
+  for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
-      c[i * n + j] = fg_extended_dot(s->inverse + member[i] * s->columns,
-                                     s->inverse + member[j] * s->columns, s->columns);
-  }
+      c[i * n + j] = fg_extended_dot(u + i * s->columns, u + j * s->columns, s->columns);
   row->dof = n;
   row->sum_of_squares = wald(c, b, n).value;
 exit:
   free(member);
   free(c);
   free(b);
+  free(u);
   return status;
 }
 

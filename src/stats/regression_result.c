@@ -33,8 +33,8 @@ fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression
         mean, fg_extended_multiply(fg_extended_of(row[j]), regression->estimate_extended[j]));
   }
   double sd = regression->residual_sd;
-  double quantile = fg_distribution_t_quantile((1 + regression->confidence) / 2,
-                                               (double)regression->residual_dof);
+  double dof = (double)regression->residual_dof;
+  double quantile = fg_distribution_t_quantile((1 + regression->confidence) / 2, dof);
   double standard_error = sd * sqrt(length.value), run = sd * sqrt(1 + length.value);
   *prediction = (fg_prediction){.mean = mean.value,
                                 .standard_error = standard_error,
@@ -42,7 +42,10 @@ fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression
                                 .low = mean.value - quantile * standard_error,
                                 .high = mean.value + quantile * standard_error,
                                 .run_low = mean.value - quantile * run,
-                                .run_high = mean.value + quantile * run};
+                                .run_high = mean.value + quantile * run,
+                                .coverage_factor = quantile,
+                                .dof = dof,
+                                .run_dof = dof};
   return FG_OK;
 }
 

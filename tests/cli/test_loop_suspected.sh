@@ -118,6 +118,7 @@ import json
 r = json.load(open("far.json"))
 assert r["verdict"] == "clean" and not r["claims"], (r["verdict"], r["claims"])
 assert any(n.startswith("Row 3 lies ") for n in r["notes"]), r["notes"]
+assert "but row 3 lies farther out than normal noise reaches: a wrong value, or a scatter" in r["summary"], r["summary"]
 assert "table.outlier(3)" in [one["name"] for one in r["rejected"]], [one["name"] for one in r["rejected"]]
 assert r["next_steps"][0].startswith("Look up row 3 in the records: it lies farther out"), r["next_steps"]
 END

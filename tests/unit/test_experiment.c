@@ -143,6 +143,85 @@ static void uncertain_runs_weigh_less(void **state) {
   fg_table_free(&table);
 }
 
+/* The scatter of the process is told by the precise runs, and their number decides how well. */
+static void dof_is_that_of_the_precise_runs(void **state) {
+  enum { PRECISE = 4 };
+  fg_context ctx = {0};
+  fg_table table = {0};
+  fg_experiment e;
+  uint64_t seed = 5;
+  double a[RUNS], y[RUNS], u[RUNS];
+  (void)state;
+  for (int i = 0; i < RUNS; i++) {
+    u[i] = i < PRECISE ? 1e-4 : 100;
+    a[i] = i % 2 ? 1 : -1;
+    y[i] = 5 + 2 * a[i] + (i < PRECISE ? 0.1 : 100) * random_gaussian(&seed);
+  }
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "a", a, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", y, RUNS));
+  assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "u", u, RUNS));
+  analyse(&table, &e);
+  assert_non_null(e.weight);
+  assert_true(fabs(e.effect[1].dof - (PRECISE - 2)) < 0.01);
+  assert_true(e.effect[1].low < 2 && 2 < e.effect[1].high);
+  fg_experiment_free(&e);
+  fg_table_free(&table);
+}
+
+/* Uncertainties over a factor of 100 about the scatter: Student's with the residual dof hold 90 %.
+ */
+static void intervals_of_unequal_runs_hold(void **state) {
+  enum { TABLES = 300 };
+  size_t held = 0;
+  uint64_t seed = 9;
+  (void)state;
+  for (size_t t = 0; t < TABLES; t++) {
+    fg_context ctx = {0};
+    fg_table table = {0};
+    fg_experiment e;
+    double a[RUNS], y[RUNS], u[RUNS];
+    for (int i = 0; i < RUNS; i++) {
+      u[i] = pow(100, random_uniform(&seed) - 0.5);
+      a[i] = i % 2 ? 1 : -1;
+      y[i] = 5 + 2 * a[i] + sqrt(1 + u[i] * u[i]) * random_gaussian(&seed);
+    }
+    assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "a", a, RUNS));
+    assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", y, RUNS));
+    assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "u", u, RUNS));
+    analyse(&table, &e);
+    held += e.effect[0].low <= 5 && 5 <= e.effect[0].high;
+    held += e.effect[1].low <= 2 && 2 <= e.effect[1].high;
+    fg_experiment_free(&e);
+    fg_table_free(&table);
+  }
+  assert_true((double)held > 0.94 * 2 * TABLES);
+}
+
+/* All centre runs are of a day whose runs are higher: no curvature. */
+static void blocks_are_no_curvature(void **state) {
+  static const char *const runs =
+      "a,b,day,y\n-1,-1,Mon,49.1\n-1,-1,Mon,48.7\n-1,1,Mon,47.2\n-1,1,Mon,46.9\n1,-1,Mon,53.2\n"
+      "1,-1,Tue,56.8\n1,1,Tue,55.1\n1,1,Tue,54.8\n0,0,Tue,54.1\n0,0,Tue,53.8\n0,0,Tue,54.3\n";
+  const fg_experiment_options options = {.response = "y", .formula = "a + b", .block = "day"};
+  const fg_experiment_options without = {.response = "y", .formula = "a + b"};
+  fg_context ctx = {0};
+  fg_table table = {0};
+  fg_experiment e;
+  size_t told = 0;
+  (void)state;
+  assert_ok(&ctx, fg_table_parse(&ctx, "runs", runs, strlen(runs), &table));
+  assert_ok(&ctx, fg_experiment_analyse(&ctx, &table, &options, &e));
+  assert_false(e.has_curvature);
+  for (size_t i = 0; i < e.notes; i++)
+    told += strstr(e.note[i], "the centre runs are not compared") != NULL;
+  assert_int_equal(told, 1);
+  fg_experiment_free(&e);
+  assert_ok(&ctx, fg_experiment_analyse(&ctx, &table, &without, &e));
+  assert_true(e.has_curvature);
+  fg_experiment_free(&e);
+  fg_table_free(&table);
+}
+
 /* With one uncertainty for all, u of a coefficient is u / sqrt(n), and nothing is weighed. */
 static void measurement_is_propagated(void **state) {
   fg_table table;
@@ -181,6 +260,9 @@ int main(void) {
       cmocka_unit_test(target_is_met),
       cmocka_unit_test(projection_is_the_nearest_point),
       cmocka_unit_test(uncertain_runs_weigh_less),
+      cmocka_unit_test(dof_is_that_of_the_precise_runs),
+      cmocka_unit_test(intervals_of_unequal_runs_hold),
+      cmocka_unit_test(blocks_are_no_curvature),
       cmocka_unit_test(measurement_is_propagated),
       cmocka_unit_test(predictions_agree),
   };

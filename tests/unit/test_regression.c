@@ -192,6 +192,37 @@ static void partial_squares_are_drops(void **state) {
 
 /* Two oven loads per temperature, two times in each: the load error judges T. With plot effects
  * +-1 (a1, a2) and +-2, and the run pattern below, all squares are small whole numbers. */
+/* Beside T:die the coefficient of T is that of the first die, which T does nothing to. The sums are
+ * those of a least squares fit with contrasts that add up to zero, less that without the term. */
+static const char *const dies = "T,die,oven,y\n"
+                                "-1,A,p,10.1\n"
+                                "0,A,q,9.8\n"
+                                "1,A,p,10.3\n"
+                                "1,A,q,9.9\n"
+                                "-1,B,p,8.2\n"
+                                "0,B,q,10.4\n"
+                                "1,B,p,11.9\n"
+                                "-1,B,q,7.7\n"
+                                "-1,C,p,5.8\n"
+                                "1,C,q,14.4\n"
+                                "1,C,p,13.7\n"
+                                "0,C,p,10.2\n"
+                                "-1,C,q,6.5\n";
+
+static void partial_squares_are_of_the_mean_over_levels(void **state) {
+  static const double sums[] = {33.867935880544564, 0.03151313327845284, 0.030913472070095205,
+                                23.837100930897495, 0.017430830039521394};
+  static const char *const terms[] = {"T", "die", "oven", "T:die", "T:oven"};
+  experiment e;
+  (void)state;
+  fit(&e, dies, "y ~ T*die + T*oven", NULL);
+  for (size_t i = 0; i < e.reg.terms; i++) {
+    assert_string_equal(e.reg.partial[i].name, terms[i]);
+    assert_near(e.reg.partial[i].sum_of_squares, sums[i], 1e-10);
+  }
+  drop(&e);
+}
+
 static void split_plot_has_two_errors(void **state) {
   static const char text[] = "T,D,load,y\n-1,-1,1,11\n-1,1,1,15\n-1,-1,2,15\n-1,1,2,15\n"
                              "1,-1,3,20\n1,1,3,26\n1,-1,4,24\n1,1,4,26\n";
@@ -334,6 +365,7 @@ int main(void) {
       cmocka_unit_test(leave_one_out_residuals_agree_with_refits),
       cmocka_unit_test(a_lever_run_is_noted),
       cmocka_unit_test(partial_squares_are_drops),
+      cmocka_unit_test(partial_squares_are_of_the_mean_over_levels),
       cmocka_unit_test(split_plot_has_two_errors),
       cmocka_unit_test(optima_beat_a_grid),
       cmocka_unit_test(planes_are_walked_straight),

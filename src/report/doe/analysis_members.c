@@ -31,7 +31,8 @@ static const fg_member anova_parts_rows[] = {
     {FG_LIST("sequential", fg_regression, sequential, terms, &anova_members),
      .words = "each term after the ones above it"},
     {FG_LIST("partial", fg_regression, partial, terms, &anova_members),
-     .words = "each term after all others"},
+     .words = "each term after all others, as the mean over the levels of words that it interacts "
+              "with"},
     {FG_LIST_BY("model", find_model_row, &anova_members), .words = "all terms together"},
     {FG_LIST_BY("error", find_error_row, &anova_members),
      .words = "residual, lack of fit, pure error, total"},

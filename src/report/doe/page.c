@@ -128,7 +128,8 @@ static void put_mixed(FILE *out, const fg_experiment *e) {
     fputs("</tr>\n", out);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">Restricted likelihood, with the degrees of "
-        "freedom of Kenward and Roger; each term beside all others.</p>\n",
+        "freedom of Kenward and Roger; each term beside all others, of a number that interacts "
+        "with words at their first levels.</p>\n",
         out);
 }
 
@@ -153,7 +154,8 @@ static void put_anova(FILE *out, const fg_experiment *e) {
     put_error_row(out, "– pure error", r->pure_dof, r->pure_ss, NAN, NAN);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">Sums of squares: each term after the ones above "
-        "it; partial: after all others.</p>\n",
+        "it; partial: after all others, as the mean over the levels of words that the term "
+        "interacts with.</p>\n",
         out);
 }
 

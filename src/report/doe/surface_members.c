@@ -112,9 +112,14 @@ static const fg_members point_members = FG_MEMBERS(point_rows);
 static const fg_member prediction_rows[] = {
     {FG_NUMBER("mean", fg_prediction, mean), .words = "expected response"},
     {FG_NUMBER("standard_error", fg_prediction, standard_error)},
-    {FG_RANGE("interval", fg_prediction, low, high), .words = "of the mean"},
+    {FG_RANGE("interval", fg_prediction, low, high),
+     .words = "of the mean; at a setting that the runs chose (stationary, optimum, rounded, ridge) "
+              "it holds at all settings of the region at once, at one that was asked for there "
+              "alone"},
+    {FG_NUMBER("coverage_factor", fg_prediction, coverage_factor),
+     .words = "half of this interval over the standard error"},
     {FG_RANGE("confirmation_run_interval", fg_prediction, run_low, run_high),
-     .words = "of one new run"},
+     .words = "of one new run, likewise"},
 };
 static const fg_members prediction_members = FG_MEMBERS(prediction_rows);
 

@@ -52,8 +52,10 @@ static fg_status conclude_one_asked(fg_context *ctx, const fg_experiment *e, con
   for (int i = 0; i < 5; i++)
     fg_value_with_unit(e->response, numbers[i], i ? 3 : 4, n[i], sizeof n[i]);
   if (isfinite(p->low))
-    fg_text_clip(interval, sizeof interval, " (%g %% interval %s to %s; one run %s to %s)",
-                 100 * e->confidence, n[1], n[2], n[3], n[4]);
+    fg_text_clip(
+        interval, sizeof interval,
+        " (%g %% interval %s to %s, if it was chosen without these runs; one run %s to %s)",
+        100 * e->confidence, n[1], n[2], n[3], n[4]);
   put_setting(e, asked, setting, sizeof setting);
   put_better(e, asked, better, sizeof better);
   return fg_sentences_add(

@@ -231,6 +231,12 @@ static fg_status conclude_trust(fg_context *ctx, const fg_experiment *e, fg_sent
   if (s->count == before && !e->all_idle)
     FG_TRY(fg_sentences_add(
         ctx, s, "It lies inside the region of the runs, by a model that they do not contradict."));
+  if (!e->all_idle && isfinite(p->low))
+    FG_TRY(fg_sentences_add(
+        ctx, s,
+        "The intervals hold at all settings of the region at once, so also at this one, which the "
+        "same runs chose. For a setting that was chosen without these runs --at has narrower "
+        "ones."));
   if (e->magnitude && !e->all_idle && isfinite(p->run_low) && p->run_low < 0)
     FG_TRY(fg_sentences_add(
         ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));

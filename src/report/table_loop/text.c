@@ -112,7 +112,13 @@ static fg_status append_noise(fg_context *ctx, const fg_loop_report *report, cha
     return fg_text_append(ctx, text, "may not be noise alone. Not sure: %s (%s)", words,
                           fg_loop_p_text(report->result->check[check].p_value).text);
   }
-  return fg_text_append(ctx, text, "is noise as far as these data can tell.");
+  if (!report->result->far_row.rows)
+    return fg_text_append(ctx, text, "is noise as far as these data can tell.");
+  fg_loop_rows_words(report, &report->result->far_row, words);
+  return fg_text_append(ctx, text,
+                        "is noise as far as these data can tell, but %s lies farther out than "
+                        "normal noise reaches: a wrong value, or a scatter with heavy tails.",
+                        words);
 }
 
 /* Appends how many of the effects looked for would have shown at the size that matters. */
