@@ -189,15 +189,21 @@ static void summarise_set(const fg_formed_foil *foil, size_t foils, const fg_die
 /* Scans of a foil (column `foil`) as they are added. */
 typedef struct formed_scan {
   const char *part; /* "": not named */
-  int number;       /* in its scan */
-  double scans;     /* scans of the same foil so far */
+  const char *bearing;
+  int number;   /* in its scan */
+  double scans; /* scans of the same foil so far */
 } formed_scan;
+
+static const char *cell_or_empty(const fg_manifest *manifest, size_t item, const char *column) {
+  size_t at = fg_manifest_column(manifest, column);
+  return at == FG_NO_COLUMN ? "" : fg_manifest_cell(manifest, item, at);
+}
 
 static formed_scan name_formed_scan(const fg_formed_lot *lot, size_t item, size_t foil) {
   const fg_manifest *manifest = &lot->lot.manifest;
-  size_t column = fg_manifest_column(manifest, lot->lot.settings.part_column);
-  return (formed_scan){.part =
-                           column == FG_NO_COLUMN ? "" : fg_manifest_cell(manifest, item, column),
+  const fg_lot_settings *settings = &lot->lot.settings;
+  return (formed_scan){.part = cell_or_empty(manifest, item, settings->part_column),
+                       .bearing = cell_or_empty(manifest, item, settings->bearing_column),
                        .number = lot->lot.records[item].foils[foil].number,
                        .scans = 1};
 }
@@ -223,7 +229,8 @@ static fg_status add_formed_scan(fg_context *ctx, const fg_formed_foil *formed, 
                                  size_t first, formed_scan *scan, fg_formed_sets *sets) {
   /* Scans of a foil follow each other in most lots. */
   for (size_t k = *named.part ? sets->foils - first : 0; k-- > 0;)
-    if (scan[k].number == named.number && !strcmp(scan[k].part, named.part)) {
+    if (scan[k].number == named.number && !strcmp(scan[k].part, named.part) &&
+        !strcmp(scan[k].bearing, named.bearing)) {
       average_scans(&sets->foil[first + k], formed, ++scan[k].scans);
       return FG_OK;
     }

@@ -161,9 +161,9 @@ static fg_status assign_parts(fg_context *ctx, reading *r) {
   return FG_OK;
 }
 
-/* Foil of a scan by its cell of the column `foil` and its number in the scan. */
+/* Foil of a scan by its cells of the columns `foil` and `bearing` and its number in the scan. */
 typedef struct named_scan {
-  char name[CELL];
+  char name[CELL], bearing[CELL];
   double number;
   size_t at;
 } named_scan;
@@ -171,6 +171,7 @@ typedef struct named_scan {
 static int compare_scans(const void *a, const void *b) {
   const named_scan *p = a, *q = b;
   int order = strcmp(p->name, q->name);
+  if (order == 0) order = strcmp(p->bearing, q->bearing);
   if (order == 0) order = (p->number > q->number) - (p->number < q->number);
   return order ? order : (p->at > q->at) - (p->at < q->at);
 }
@@ -178,6 +179,7 @@ static int compare_scans(const void *a, const void *b) {
 /* Finds the scans that show one foil: it counts once, as in the lot's own report. */
 static fg_status find_same_foils(fg_context *ctx, reading *r) {
   const fg_column *name = find_column(&r->foils, "foil"),
+                  *bearing = find_column(&r->foils, "bearing"),
                   *number = find_column(&r->foils, "foil_number");
   size_t foils = r->lot->foil_count, count = 0;
   named_scan *scan;
@@ -186,11 +188,13 @@ static fg_status find_same_foils(fg_context *ctx, reading *r) {
   for (size_t i = 0; i < foils; i++) {
     r->same[i] = i;
     scan[count] = (named_scan){.number = number ? cell_number(number, r->foil[i]) : 1, .at = i};
+    cell_text(bearing, r->foil[i], scan[count].bearing);
     count += *cell_text(name, r->foil[i], scan[count].name) != '\0';
   }
   fg_sort_items(scan, count, sizeof *scan, compare_scans);
   for (size_t k = 1; k < count; k++)
-    if (!strcmp(scan[k].name, scan[k - 1].name) && scan[k].number == scan[k - 1].number) {
+    if (!strcmp(scan[k].name, scan[k - 1].name) && scan[k].number == scan[k - 1].number &&
+        !strcmp(scan[k].bearing, scan[k - 1].bearing)) {
       r->same[scan[k].at] = r->same[scan[k - 1].at];
       r->repeats = true;
     }

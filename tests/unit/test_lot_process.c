@@ -99,6 +99,25 @@ static void scans_of_a_foil_count_once(void **state) {
   assert_true(apart.chart.sigma < named.chart.sigma / 2);
 }
 
+/* Foils 1 to 3 of each bearing are no scans of three foils. */
+static void foils_of_bearings_may_share_a_name(void **state) {
+  (void)state;
+  static const char *const cells[] = {",1,A", ",2,A", ",3,A", ",1,B", ",2,B", ",3,B"};
+  fg_design design;
+  fg_lot_analysis analysis;
+  fg_design_default(&design);
+  fg_lot lot = made_lot(&design, 6, BUMPS, ",foil,bearing", cells);
+  for (size_t i = 0; i < 6; i++)
+    for (size_t k = 0; k < BUMPS; k++)
+      made_bump(&lot, i, k, 3.36 + 0.001 * (double)i, 63);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
+  assert_int_equal(analysis.scanned_again, 0);
+  assert_int_equal(fg_lot_find_quantity(&analysis, "radius_mm")->chart.count, 6);
+  assert_true(analysis.bearing_count == 2 && analysis.bearings[1].pad[2]);
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+}
+
 /* Two dies in turn, 60 µm apart: the chart signals, and the die is why; who measured is not. */
 static void dies_in_turn_explain_the_signals(void **state) {
   (void)state;
@@ -263,6 +282,7 @@ static void the_margin_of_the_worst_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(scans_of_a_foil_count_once),
+      cmocka_unit_test(foils_of_bearings_may_share_a_name),
       cmocka_unit_test(dies_in_turn_explain_the_signals),
       cmocka_unit_test(a_drift_is_a_trend),
       cmocka_unit_test(a_single_outlier_and_a_new_die_are_no_trend),
