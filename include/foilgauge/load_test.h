@@ -248,6 +248,7 @@ enum {
   FG_BREAK_NONE_SHOWN = 1 << 6,    /* the preload lies within U of none */
   FG_BREAK_GAP = 1 << 7,           /* a preload although the load test has a clearance */
   FG_BREAK_SUSPECTED = 1 << 8,     /* possibly not a straight line */
+  FG_BREAK_WEIGHTS = 1 << 9,       /* the weights' means scatter more than their pulls explain */
 };
 const fg_load_flag *fg_break_away_flags(void); /* ends with a row whose name is NULL */
 

@@ -186,19 +186,87 @@ static void summarise_set(const fg_formed_foil *foil, size_t foils, const fg_die
   data->rest_dof = fmax(0, data->rest_dof - ((double)data->places - 1));
 }
 
+/* Scans of a foil (column `foil`) as they are added. */
+typedef struct formed_scan {
+  const char *part; /* "": not named */
+  const char *bearing;
+  int number;   /* in its scan */
+  double scans; /* scans of the same foil so far */
+} formed_scan;
+
+static const char *cell_or_empty(const fg_manifest *manifest, size_t item, const char *column) {
+  size_t at = fg_manifest_column(manifest, column);
+  return at == FG_NO_COLUMN ? "" : fg_manifest_cell(manifest, item, at);
+}
+
+static formed_scan name_formed_scan(const fg_formed_lot *lot, size_t item, size_t foil) {
+  const fg_manifest *manifest = &lot->lot.manifest;
+  const fg_lot_settings *settings = &lot->lot.settings;
+  return (formed_scan){.part = cell_or_empty(manifest, item, settings->part_column),
+                       .bearing = cell_or_empty(manifest, item, settings->bearing_column),
+                       .number = lot->lot.records[item].foils[foil].number,
+                       .scans = 1};
+}
+
+static void average(double *mean, double value, double scans) {
+  if (!isfinite(*mean)) *mean = value;
+  if (isfinite(value)) *mean += (value - *mean) / scans;
+}
+
+/* Adds a further scan of a foil to the mean of its scans. A bump that one of them lacks counts as
+ * the others show it. */
+static void average_scans(fg_formed_foil *mean, const fg_formed_foil *scan, double scans) {
+  average(&mean->overall, scan->overall, scans);
+  average(&mean->pitch, scan->pitch, scans);
+  for (size_t i = 0; i < FG_COMPENSATION_BUMPS; i++)
+    for (int k = 0; k < 2; k++)
+      average(&mean->log_ratio[k][i], scan->log_ratio[k][i], scans);
+}
+
+/* Adds a foil, or to the mean of its scans where an earlier one shows it. `scan` has room for every
+ * foil of the set. */
+static fg_status add_formed_scan(fg_context *ctx, const fg_formed_foil *formed, formed_scan named,
+                                 size_t first, formed_scan *scan, fg_formed_sets *sets) {
+  /* Scans of a foil follow each other in most lots. */
+  for (size_t k = *named.part ? sets->foils - first : 0; k-- > 0;)
+    if (scan[k].number == named.number && !strcmp(scan[k].part, named.part) &&
+        !strcmp(scan[k].bearing, named.bearing)) {
+      average_scans(&sets->foil[first + k], formed, ++scan[k].scans);
+      return FG_OK;
+    }
+  scan[sets->foils - first] = named;
+  return append_formed_foil(ctx, sets, formed);
+}
+
+static fg_status add_formed_foils(fg_context *ctx, const fg_formed_lot *lot, const char *name,
+                                  const fg_die_dimensions *die, size_t bumps,
+                                  fg_formed_sets *sets) {
+  const fg_manifest *manifest = &lot->lot.manifest;
+  size_t first = sets->foils, column = fg_manifest_column(manifest, lot->lot.settings.die_column);
+  size_t count = 0;
+  formed_scan *scan;
+  fg_formed_foil formed;
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < manifest->items; i++)
+    count += lot->lot.records[i].foil_count;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *scan, (void **)&scan));
+  for (size_t i = 0; i < manifest->items; i++)
+    for (size_t f = 0; f < lot->lot.records[i].foil_count; f++) {
+      bool of_die = !name || !strcmp(fg_manifest_cell(manifest, i, column), name);
+      if (of_die && fill_formed_foil(&lot->lot.records[i].foils[f], die, bumps, &formed))
+        FG_TRY_EXIT(add_formed_scan(ctx, &formed, name_formed_scan(lot, i, f), first, scan, sets));
+    }
+exit:
+  free(scan);
+  return status;
+}
+
 /* Adds the foils of one die, and their set where there are any. */
 static fg_status add_set(fg_context *ctx, const fg_formed_lot *lot, const char *name,
                          const fg_die_dimensions *die, fg_die_origin origin, size_t bumps,
                          fg_formed_sets *sets) {
-  size_t first = sets->foils,
-         column = fg_manifest_column(&lot->lot.manifest, lot->lot.settings.die_column);
-  fg_formed_foil formed;
-  for (size_t i = 0; i < lot->lot.manifest.items; i++)
-    for (size_t f = 0; f < lot->lot.records[i].foil_count; f++) {
-      bool of_die = !name || !strcmp(fg_manifest_cell(&lot->lot.manifest, i, column), name);
-      if (of_die && fill_formed_foil(&lot->lot.records[i].foils[f], die, bumps, &formed))
-        FG_TRY(append_formed_foil(ctx, sets, &formed));
-    }
+  size_t first = sets->foils;
+  FG_TRY(add_formed_foils(ctx, lot, name, die, bumps, sets));
   if (sets->foils == first) return FG_OK;
   FG_TRY(fg_memory_reserve(ctx, sets->count + 1, sizeof *sets->set, &sets->capacity,
                            (void **)&sets->set));

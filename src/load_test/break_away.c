@@ -49,35 +49,63 @@ const fg_load_flag *fg_break_away_flags(void) {
       {FG_BREAK_UNCHECKED, "line_not_checked",
        "too few weights or pulls to say whether the line is straight: that takes three weights and "
        "four pulls"},
+      {FG_BREAK_WEIGHTS, "weights_differ",
+       "pulls of one weight resemble each other more than the line fits the weights (p < 0.1): "
+       "each "
+       "weight counts once; hang every weight anew for every pull"},
       {0, NULL, NULL},
   };
   return flags;
 }
 
-/* The pulls of a bearing, the weights over the heaviest. */
+/* The pulls of a bearing, the weights over the heaviest; by weight: the means of each weight's. */
 typedef struct pulls {
   const fg_load_test *test;
   size_t bearing, count, weights;
   double low_n, high_n;
+  bool by_weight;
 } pulls;
 
-static bool is_of(const pulls *p, size_t i) {
+static bool is_of_bearing(const pulls *p, size_t i) {
   return p->test->pulls[i].bearing == p->bearing;
 }
 
+static bool has_weight(const pulls *p, size_t i, double weight_n) {
+  return is_of_bearing(p, i) && p->test->pulls[i].weight_n == weight_n;
+}
+
+static bool is_weight_again(const pulls *p, size_t i) {
+  for (size_t k = 0; k < i; k++)
+    if (has_weight(p, k, p->test->pulls[i].weight_n)) return true;
+  return false;
+}
+
+static bool is_of(const pulls *p, size_t i) {
+  return is_of_bearing(p, i) && !(p->by_weight && is_weight_again(p, i));
+}
+
 static pulls find_pulls(const fg_load_test *test, size_t bearing) {
-  pulls p = {test, bearing, 0, 0, INFINITY, -INFINITY};
+  pulls p = {test, bearing, 0, 0, INFINITY, -INFINITY, false};
   for (size_t i = 0; i < test->pull_count; i++) {
-    bool again = false;
     double weight = test->pulls[i].weight_n;
     if (!is_of(&p, i)) continue;
-    for (size_t k = 0; k < i && !again; k++)
-      again = is_of(&p, k) && test->pulls[k].weight_n == weight;
     p.count++;
-    p.weights += !again;
+    p.weights += !is_weight_again(&p, i);
     p.low_n = fmin(p.low_n, weight), p.high_n = fmax(p.high_n, weight);
   }
   return p;
+}
+
+static double weight_mean(const pulls *p, double weight_n) {
+  double mean = 0, count = 0;
+  for (size_t i = 0; i < p->test->pull_count; i++)
+    if (has_weight(p, i, weight_n)) mean += (p->test->pulls[i].friction_n - mean) / ++count;
+  return mean;
+}
+
+static double friction_of(const pulls *p, size_t i) {
+  const fg_break_away_pull *pull = &p->test->pulls[i];
+  return p->by_weight ? weight_mean(p, pull->weight_n) : pull->friction_n;
 }
 
 enum { LINE = 2, CURVE = 3 };
@@ -94,7 +122,7 @@ static void make_row(const pulls *p, size_t i, double row[CURVE]) {
 }
 
 static double residual(const pulls *p, const line *l, size_t unknowns, size_t i) {
-  double row[CURVE], sum = p->test->pulls[i].friction_n;
+  double row[CURVE], sum = friction_of(p, i);
   make_row(p, i, row);
   for (size_t k = 0; k < unknowns; k++)
     sum -= row[k] * l->x[k];
@@ -108,7 +136,7 @@ static bool fit_break_away_line(const pulls *p, size_t unknowns, line *l) {
     double row[CURVE];
     if (!is_of(p, i)) continue;
     make_row(p, i, row);
-    fg_normal_add(&system, row, p->test->pulls[i].friction_n, 1);
+    fg_normal_add(&system, row, friction_of(p, i), 1);
   }
   if (!fg_normal_solve(&system, 0, l->x, l->inverse)) return false;
   l->squares = 0, l->all_squares = system.sum_squares;
@@ -150,6 +178,24 @@ static double test_curve(const pulls *p, const line *straight) {
   find_covariance(p, &curve, CURVE, covariance);
   double t = curve.x[CURVE - 1] / sqrt(covariance[CURVE - 1][CURVE - 1]);
   return fg_distribution_t_two_sided(t, (double)p->count - CURVE);
+}
+
+/* Returns true when the weights' means lie farther from the line than the scatter of pulls of one
+ * weight explains. Hanging a weight sets the test up anew, and what that changes is in all of its
+ * pulls alike: each weight then counts once. */
+static bool weights_differ(const pulls *p, const line *l) {
+  double within = 0, between = 0;
+  double dof_within = (double)(p->count - p->weights), dof_between = (double)p->weights - LINE;
+  if (!(dof_within > 0) || !(dof_between > 0)) return false;
+  for (size_t i = 0; i < p->test->pull_count; i++) {
+    if (!is_of(p, i)) continue;
+    double own = p->test->pulls[i].friction_n - weight_mean(p, p->test->pulls[i].weight_n);
+    within += own * own;
+    between += pow(residual(p, l, LINE, i) - own, 2);
+  }
+  if (!(between > rounding * l->all_squares)) return false;
+  double ratio = between / dof_between / (within / dof_within);
+  return !(fg_distribution_f_upper(ratio, dof_between, dof_within) > p_suspected_max);
 }
 
 /* The rig's friction and its standard uncertainty at the rotor's surface. */
@@ -239,6 +285,13 @@ void fg_load_sum_break_away(const fg_load_test *test, size_t bearing, fg_load_be
     return;
   }
   out->p_curved = test_curve(&p, &straight);
+  if (weights_differ(&p, &straight)) {
+    out->flags |= FG_BREAK_WEIGHTS;
+    p.by_weight = true;
+    p.count = p.weights;
+    if (!fit_break_away_line(&p, LINE, &straight)) return;
+    if (p.count >= CHECKED_PULLS_MIN) out->p_curved = test_curve(&p, &straight);
+  }
   fill_from_line(&p, &straight, sum);
   withhold_unsupported(&p, sum);
   sum->preload_kpa = (fg_load_value){to_kpa(o, sum->preload_n.value), to_kpa(o, sum->preload_n.u),

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/table.h"
@@ -25,7 +26,12 @@ typedef struct reading {
   fg_table foils, parts; /* tables of the lot's CSV files */
   size_t *foil;          /* row of foils.csv by counted foil */
   size_t *owner;         /* foil by row of `parts` */
-  size_t *count;         /* number of values of the current stat by foil */
+  size_t *same;          /* by counted foil: the first scan of the same foil */
+  bool repeats;          /* some foil was scanned more than once */
+  size_t *slot;          /* by row of `parts`: parts of one number in scans of a foil share one */
+  size_t *slot_foil, slots;
+  double *sum;           /* by slot, or by foil */
+  size_t *count, *known; /* number of values: as of `sum`, and by foil */
 } reading;
 
 static const fg_column *find_column(const fg_table *table, const char *name) {
@@ -111,7 +117,9 @@ static fg_status assign_dies(fg_context *ctx, reading *r) {
   FG_TRY(fg_memory_allocate(ctx, r->lot->foil_count, sizeof *r->lot->die, &block));
   r->lot->die = block;
   for (size_t i = 0; i < r->lot->foil_count; i++)
-    FG_TRY(find_or_add_die(ctx, r->index, cell_text(column, r->foil[i], cell), &r->lot->die[i]));
+    FG_TRY(find_or_add_die(ctx, r->index,
+                           r->same[i] == i ? cell_text(column, r->foil[i], cell) : "",
+                           &r->lot->die[i]));
   return list_words(ctx, r, "coil", &r->lot->coils);
 }
 
@@ -153,43 +161,132 @@ static fg_status assign_parts(fg_context *ctx, reading *r) {
   return FG_OK;
 }
 
-/* Reads the value of every foil, or the mean of its parts; *mean is the mean of all values. */
+/* Foil of a scan by its cells of the columns `foil` and `bearing` and its number in the scan. */
+typedef struct named_scan {
+  char name[CELL], bearing[CELL];
+  double number;
+  size_t at;
+} named_scan;
+
+static int compare_scans(const void *a, const void *b) {
+  const named_scan *p = a, *q = b;
+  int order = strcmp(p->name, q->name);
+  if (order == 0) order = strcmp(p->bearing, q->bearing);
+  if (order == 0) order = (p->number > q->number) - (p->number < q->number);
+  return order ? order : (p->at > q->at) - (p->at < q->at);
+}
+
+/* Finds the scans that show one foil: it counts once, as in the lot's own report. */
+static fg_status find_same_foils(fg_context *ctx, reading *r) {
+  const fg_column *name = find_column(&r->foils, "foil"),
+                  *bearing = find_column(&r->foils, "bearing"),
+                  *number = find_column(&r->foils, "foil_number");
+  size_t foils = r->lot->foil_count, count = 0;
+  named_scan *scan;
+  FG_TRY(fg_memory_allocate(ctx, foils, sizeof *r->same, (void **)&r->same));
+  FG_TRY(fg_memory_allocate(ctx, foils, sizeof *scan, (void **)&scan));
+  for (size_t i = 0; i < foils; i++) {
+    r->same[i] = i;
+    scan[count] = (named_scan){.number = number ? cell_number(number, r->foil[i]) : 1, .at = i};
+    cell_text(bearing, r->foil[i], scan[count].bearing);
+    count += *cell_text(name, r->foil[i], scan[count].name) != '\0';
+  }
+  fg_sort_items(scan, count, sizeof *scan, compare_scans);
+  for (size_t k = 1; k < count; k++)
+    if (!strcmp(scan[k].name, scan[k - 1].name) && scan[k].number == scan[k - 1].number &&
+        !strcmp(scan[k].bearing, scan[k - 1].bearing)) {
+      r->same[scan[k].at] = r->same[scan[k - 1].at];
+      r->repeats = true;
+    }
+  free(scan);
+  return FG_OK;
+}
+
+static void put_in_slot(reading *r, size_t row, size_t slot) {
+  r->slot[row] = slot;
+  if (slot == r->slots) r->slot_foil[r->slots++] = r->same[r->owner[row]];
+}
+
+/* Puts every row into a slot of its own, rows of one number in scans of one foil into one. */
+static fg_status find_slots(fg_context *ctx, reading *r) {
+  bool bumps = fg_foil_kind_parts(r->lot->design.kind) == FG_QUANTITY_OF_BUMP;
+  const fg_column *number = find_column(&r->parts, bumps ? "bump" : "beam");
+  size_t rows = r->parts.rows, numbers = 1, *slot_of = NULL;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *r->slot, (void **)&r->slot));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *r->slot_foil, (void **)&r->slot_foil));
+  for (size_t row = 0; number && row < rows; row++)
+    if (cell_number(number, row) >= (double)numbers) numbers = (size_t)cell_number(number, row) + 1;
+  if (r->repeats)
+    FG_TRY(
+        fg_memory_allocate(ctx, r->lot->foil_count, numbers * sizeof *slot_of, (void **)&slot_of));
+  for (size_t row = 0; row < rows; row++) {
+    if (r->owner[row] == FG_INDEX_NONE) continue;
+    double n = number && r->repeats ? cell_number(number, row) : NAN;
+    size_t *key = n >= 0 ? &slot_of[r->same[r->owner[row]] * numbers + (size_t)n] : NULL;
+    put_in_slot(r, row, key && *key ? *key - 1 : r->slots);
+    if (key) *key = r->slot[row] + 1;
+  }
+  free(slot_of);
+  return FG_OK;
+}
+
+/* Adds the values of a column up by slot, or by foil; returns their number and adds their sum. */
+static size_t add_values_of_column(reading *r, const fg_column *column, bool of_part, double *sum) {
+  size_t lines = of_part ? r->parts.rows : r->lot->foil_count, known = 0;
+  size_t slots = of_part ? r->slots : r->lot->foil_count;
+  for (size_t s = 0; s < slots; s++) {
+    r->sum[s] = 0;
+    r->count[s] = 0;
+  }
+  for (size_t i = 0; column && i < lines; i++) {
+    double value = cell_number(column, of_part ? i : r->foil[i]);
+    if ((of_part && r->owner[i] == FG_INDEX_NONE) || !isfinite(value)) continue;
+    size_t slot = of_part ? r->slot[i] : r->same[i];
+    r->sum[slot] += value;
+    r->count[slot]++;
+    *sum += value;
+    known++;
+  }
+  return known;
+}
+
+/* Reads the value of every foil, or the mean of its parts; *mean is the mean of all values. An
+ * earlier version of the program counted scans: its mean is that of all lines. */
 static fg_status read_stat(fg_context *ctx, reading *r, fg_index_stat *stat, double *mean) {
   bool of_part = fg_owner_is_part(stat->owner);
   const fg_table *table = of_part ? &r->parts : &r->foils;
-  const fg_column *column = find_column(table, stat->row->name);
-  size_t lines = of_part ? r->parts.rows : r->lot->foil_count, known = 0;
-  double sum = 0;
-  void *block;
-  FG_TRY(fg_memory_allocate(ctx, r->lot->foil_count, sizeof *stat->foil, &block));
-  stat->foil = block;
-  memset(r->count, 0, r->lot->foil_count * sizeof *r->count);
-  for (size_t i = 0; column && i < lines; i++) {
-    size_t foil = of_part ? r->owner[i] : i;
-    double value = cell_number(column, of_part ? i : r->foil[i]);
-    if (foil == FG_INDEX_NONE || !isfinite(value)) continue;
+  size_t foils = r->lot->foil_count, slots = of_part ? r->slots : foils, known = 0;
+  double sum = 0, all = 0;
+  FG_TRY(fg_memory_allocate(ctx, foils, sizeof *stat->foil, (void **)&stat->foil));
+  memset(r->known, 0, foils * sizeof *r->known);
+  size_t lines = add_values_of_column(r, find_column(table, stat->row->name), of_part, &all);
+  for (size_t s = 0; s < slots; s++) {
+    if (!r->count[s]) continue;
+    size_t foil = of_part ? r->slot_foil[s] : s;
+    double value = r->sum[s] / (double)r->count[s];
     stat->foil[foil] += value;
-    r->count[foil]++;
+    r->known[foil]++;
     sum += value;
     known++;
   }
-  for (size_t i = 0; i < r->lot->foil_count; i++)
-    stat->foil[i] = r->count[i] ? stat->foil[i] / (double)r->count[i] : NAN;
-  *mean = known == stat->count && known ? sum / (double)known : NAN;
+  for (size_t i = 0; i < foils; i++)
+    stat->foil[i] = r->known[i] ? stat->foil[i] / (double)r->known[i] : NAN;
+  *mean = known && known == stat->count   ? sum / (double)known
+          : lines && lines == stat->count ? all / (double)lines
+                                          : NAN;
   return FG_OK;
 }
 
 static fg_status read_ratios(fg_context *ctx, reading *r) {
-  const fg_column *column = find_column(&r->parts, "radius_mm");
   fg_index_lot *lot = r->lot;
-  FG_TRY(fg_memory_allocate(ctx, r->parts.rows, sizeof *lot->ratio, (void **)&lot->ratio));
-  FG_TRY(
-      fg_memory_allocate(ctx, r->parts.rows, sizeof *lot->ratio_foil, (void **)&lot->ratio_foil));
-  for (size_t row = 0; column && row < r->parts.rows; row++) {
-    double value = cell_number(column, row);
-    if (r->owner[row] == FG_INDEX_NONE || !isfinite(value)) continue;
-    lot->ratio_foil[lot->ratios] = r->owner[row];
-    lot->ratio[lot->ratios++] = value / lot->design.bumps.radius_mm;
+  double unused = 0;
+  FG_TRY(fg_memory_allocate(ctx, r->slots, sizeof *lot->ratio, (void **)&lot->ratio));
+  FG_TRY(fg_memory_allocate(ctx, r->slots, sizeof *lot->ratio_foil, (void **)&lot->ratio_foil));
+  add_values_of_column(r, find_column(&r->parts, "radius_mm"), true, &unused);
+  for (size_t s = 0; s < r->slots; s++) {
+    if (!r->count[s]) continue;
+    lot->ratio_foil[lot->ratios] = r->slot_foil[s];
+    lot->ratio[lot->ratios++] = r->sum[s] / (double)r->count[s] / lot->design.bumps.radius_mm;
   }
   return FG_OK;
 }
@@ -201,7 +298,10 @@ static const char *parts_file_name(const fg_index_lot *lot) {
 /* Checks the files against lot.json: another run may have written one of them. */
 static fg_status read_stats(fg_context *ctx, reading *r) {
   fg_index_lot *lot = r->lot;
-  FG_TRY(fg_memory_allocate(ctx, lot->foil_count, sizeof *r->count, (void **)&r->count));
+  size_t max = r->slots > lot->foil_count ? r->slots : lot->foil_count;
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *r->sum, (void **)&r->sum));
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *r->count, (void **)&r->count));
+  FG_TRY(fg_memory_allocate(ctx, lot->foil_count, sizeof *r->known, (void **)&r->known));
   for (size_t i = 0; i < lot->stat_count; i++) {
     double mean;
     fg_index_stat *stat = &lot->stats[i];
@@ -253,6 +353,8 @@ fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lo
   if (lot->foils_unknown) goto exit;
   FG_TRY_EXIT(list_counted_foils(ctx, &r));
   FG_TRY_EXIT(assign_parts(ctx, &r));
+  FG_TRY_EXIT(find_same_foils(ctx, &r));
+  FG_TRY_EXIT(find_slots(ctx, &r));
   FG_TRY_EXIT(read_stats(ctx, &r));
   if (!lot->foils_unknown) FG_TRY_EXIT(assign_dies(ctx, &r));
 exit:
@@ -261,6 +363,11 @@ exit:
   fg_table_free(&r.parts);
   free(r.foil);
   free(r.owner);
+  free(r.same);
+  free(r.slot);
+  free(r.slot_foil);
+  free(r.sum);
   free(r.count);
+  free(r.known);
   return status;
 }

@@ -36,7 +36,7 @@ from other_bearing import make_break_away, make_record
 from other_bearing_kinds import KINDS, PULL_KINDS, draw_spec, generator_of
 
 # Flags that tell of a test and cast no doubt on a value. Every other flag, also one that is new, does.
-INFORMATIVE = {"stiffness_at_end", "one_cycle", "line_not_checked"}
+INFORMATIVE = {"stiffness_at_end", "one_cycle", "line_not_checked", "weights_differ"}
 
 # label, of a direction or the bearing, member of the truth, names in the report
 QUANTITIES = [

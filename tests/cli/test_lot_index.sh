@@ -156,6 +156,39 @@ json.dump(lot, open(sys.argv[1], "w"))
 P
 expect 0 'Lots? .*a.x1B.31m|a.x1B.31m' index b a
 grep -q $'\x1b' i.html i.json stderr && fail "a control character of a lot's name"
+
+# Two lots of one process, nine foils each, every foil scanned four times: a foil counts once, or its scans, which scatter
+# less than foils do, would make two lots of it and signals of its chart. In the lots with "names" the column says so.
+python3 - "$root/tests/support" "$program" "$renderer" <<'P' || fail "lots of repeated scans"
+import math, pathlib, random, sys
+sys.path.insert(0, sys.argv[1])
+import formed_lots as made
+template = made.Template(sys.argv[2], "template", {**made.DESIGN, "bump_count": 9}, renderer=sys.argv[3])
+rng = random.Random(4)
+for lot in ("first", "second"):
+    foils, names = [], []
+    for foil in range(9):
+        own, overall = rng.gauss(0, 0.006), 20.93 * math.exp(rng.gauss(0, 0.0015))
+        radii = [3.32 * math.exp(0.05 + own + rng.gauss(0, 0.006)) for _ in range(9)]
+        for scan in range(4):
+            foils.append(template.foil(overall, 40 / 3, [(r * math.exp(rng.gauss(0, 1e-4)), 3.32 * 63.15 / r) for r in radii]))
+            names.append(f"foil {foil + 1}")
+    template.write(lot + "_named", foils, {"foil": names})
+    template.write(lot + "_apart", foils)
+pathlib.Path("die_design.json").write_text('{"schema":"foilgauge/design/1","bump_count":9}')
+P
+expect 0 'No two lots differ' index first_named second_named
+is '{(p["larger"], p["smaller"]) for p in pairs if p["differs"]}' 'set()' '[q["foils"] for q in r["lots"][0]["quantities"].values()][0]' 9 \
+  'r["lots"][0]["radius_over_design"]["count"]' 81 'r["lots"][0]["foils_unknown"]' None
+expect 0 '' index first_apart second_apart
+is '[q["foils"] for q in r["lots"][0]["quantities"].values()][0]' 36
+[ "$(value first_named/lot.json '[r["counts"][k] for k in ("foils", "foils_scanned_again")]')" = '[36, 27]' ] || fail "scans of a foil are not counted"
+[ "$(value first_named/lot.json '[r["quantities"]["radius_mm"][k] for k in ("count", "stable")]')" = '[81, True]' ] || fail "a chart of scans"
+[ "$(value first_apart/lot.json '[r["quantities"]["radius_mm"][k] for k in ("count", "stable")]')" = '[324, False]' ] || fail "a chart of scans that no column joins"
+grep -q 'Different foils' first_named/index.html && ! grep -q 'Different foils' first_apart/index.html || fail "the page's number of foils"
+expect 0 '' "$program" die --target die_design.json --lot first_named -o next.json
+[ "$(value next.json 'r["expected"]["foils"]')" = 9 ] || fail "the next die counts scans for foils"
+valid lot.schema.json first_named/lot.json
 valid lot_index.schema.json kept*.json i.json
 valid lot.schema.json model/lot.json dated/lot.json
 exit $failed

@@ -46,39 +46,76 @@ static fg_lot_quantity radius_of(const char *const *cells, const double *offset_
   return radius; /* of it only numbers are read */
 }
 
-/* Interval of Ppk where every three scans are of one foil, whose cells name it or are empty. */
-static fg_ratio ppk_of_scans(bool named) {
+/* Radii of 24 scans: three of each of 8 foils, whose cells name them, or of 8 foils once. */
+static fg_lot_quantity radius_of_scans(size_t scans, bool named, size_t *again, size_t *bearings) {
   static const char *const names[] = {",a,", ",b,", ",c,", ",d,", ",e,", ",f,", ",g,", ",h,"};
+  enum { ON_A_PAD = 9 };
   const char *cells[FOILS];
-  double offset[FOILS];
   fg_design design;
   fg_lot_analysis analysis;
   fg_design_default(&design);
-  design.bumps.count = BUMPS;
+  design.bumps.count = ON_A_PAD;
   design.tolerance_count = 1;
   strcpy(design.calibration.not_needed, "the foils are made up");
   design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.5};
-  for (size_t i = 0; i < FOILS; i++) {
-    cells[i] = named ? names[i / 3] : ",,";
-    offset[i] = 0.02 * (double)(i / 3 % 3);
-  }
-  fg_lot lot = made_lot(&design, FOILS, BUMPS, ",foil,operator", cells);
-  for (size_t i = 0; i < FOILS; i++)
-    for (size_t k = 0; k < BUMPS; k++)
-      made_bump(&lot, i, k, 3.36 + offset[i] + 0.002 * (double)k, 63);
+  for (size_t i = 0; i < 8 * scans; i++)
+    cells[i] = named ? names[i / scans] : ",,";
+  fg_lot lot = made_lot(&design, 8 * scans, ON_A_PAD, ",foil,operator", cells);
+  for (size_t i = 0; i < 8 * scans; i++)
+    for (size_t k = 0; k < ON_A_PAD; k++) {
+      double scan = scans > 1 ? 0.001 * ((double)(i % scans) - 1) : 0;
+      made_bump(&lot, i, k, 3.36 + 0.02 * (double)(i / scans % 3) + 0.002 * (double)k + scan, 63);
+    }
   assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
-  fg_ratio ppk = fg_lot_find_quantity(&analysis, "radius_mm")->capability.pk;
+  fg_lot_quantity radius = *fg_lot_find_quantity(&analysis, "radius_mm");
+  *again = analysis.scanned_again;
+  *bearings = analysis.bearing_count;
   fg_lot_analysis_free(&analysis);
   made_lot_free(&lot);
-  return ppk;
+  return radius; /* of it only numbers are read */
 }
 
-/* 24 scans of 8 foils say no more of the process than 8 do. */
+/* 24 scans of 8 foils say no more of the process than 8 do: the chart has a point for each foil,
+ * and its limits are those from foil to foil, not from scan to scan. */
 static void scans_of_a_foil_count_once(void **state) {
   (void)state;
-  fg_ratio named = ppk_of_scans(true), apart = ppk_of_scans(false);
-  assert_near(named.value, apart.value, 1e-12);
-  assert_in_range(100 * (named.high - named.low) / (apart.high - apart.low), 150, 230);
+  size_t again, bearings;
+  fg_lot_quantity once = radius_of_scans(1, true, &again, &bearings);
+  assert_int_equal(again, 0);
+  assert_int_equal(bearings, 2);
+  fg_lot_quantity named = radius_of_scans(3, true, &again, &bearings);
+  assert_int_equal(again, 16);
+  assert_int_equal(bearings, 2);
+  fg_lot_quantity apart = radius_of_scans(3, false, &again, &bearings);
+  assert_int_equal(again, 0);
+  assert_int_equal(apart.chart.count, 24);
+  assert_int_equal(named.chart.count, 8);
+  assert_int_equal(named.count, once.count);
+  assert_near(named.mean, once.mean, 1e-12);
+  assert_near(named.sd, once.sd, 1e-12);
+  assert_near(named.chart.sigma, once.chart.sigma, 1e-12);
+  assert_near(named.capability.pk.low, once.capability.pk.low, 1e-9);
+  assert_near(named.capability.pk.high, once.capability.pk.high, 1e-9);
+  assert_true(apart.chart.sigma < named.chart.sigma / 2);
+}
+
+/* Foils 1 to 3 of each bearing are no scans of three foils. */
+static void foils_of_bearings_may_share_a_name(void **state) {
+  (void)state;
+  static const char *const cells[] = {",1,A", ",2,A", ",3,A", ",1,B", ",2,B", ",3,B"};
+  fg_design design;
+  fg_lot_analysis analysis;
+  fg_design_default(&design);
+  fg_lot lot = made_lot(&design, 6, BUMPS, ",foil,bearing", cells);
+  for (size_t i = 0; i < 6; i++)
+    for (size_t k = 0; k < BUMPS; k++)
+      made_bump(&lot, i, k, 3.36 + 0.001 * (double)i, 63);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
+  assert_int_equal(analysis.scanned_again, 0);
+  assert_int_equal(fg_lot_find_quantity(&analysis, "radius_mm")->chart.count, 6);
+  assert_true(analysis.bearing_count == 2 && analysis.bearings[1].pad[2]);
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
 }
 
 /* Two dies in turn, 60 µm apart: the chart signals, and the die is why; who measured is not. */
@@ -245,6 +282,7 @@ static void the_margin_of_the_worst_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(scans_of_a_foil_count_once),
+      cmocka_unit_test(foils_of_bearings_may_share_a_name),
       cmocka_unit_test(dies_in_turn_explain_the_signals),
       cmocka_unit_test(a_drift_is_a_trend),
       cmocka_unit_test(a_single_outlier_and_a_new_die_are_no_trend),

@@ -30,6 +30,27 @@ static fg_status list_lot_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
+/* Finds the scans that show one foil (column `foil`). */
+static fg_status find_scans_of_foils(fg_context *ctx, fg_lot_analysis *analysis) {
+  size_t count = analysis->foil_count, *owner;
+  bool *measured = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *owner, (void **)&owner));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *measured, (void **)&measured));
+  FG_TRY_EXIT(fg_lot_find_owners(ctx, analysis, owner));
+  for (size_t i = 0; i < count; i++) {
+    fg_lot_foil *foil = &analysis->foils[i];
+    foil->owner = owner[i];
+    foil->again = measured[owner[i]];
+    measured[owner[i]] = measured[owner[i]] || fg_foil_is_measured(foil->foil);
+    analysis->scanned_again += foil->again;
+  }
+exit:
+  free(owner);
+  free(measured);
+  return status;
+}
+
 static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
   const fg_judgement *worst = NULL;
   for (size_t i = 0; i < decision->count; i++)
@@ -110,7 +131,7 @@ static void find_worst_three(fg_lot_analysis *analysis) {
       const fg_lot_foil *foil = &analysis->foils[i];
       bool taken = false;
       for (int k = 0; k < place; k++)
-        taken = taken || analysis->worst[k] == foil;
+        taken = taken || analysis->worst[k]->owner == foil->owner;
       if (taken) continue;
       if (!analysis->worst[place] || is_worse_foil(foil, analysis->worst[place]))
         analysis->worst[place] = foil;
@@ -161,6 +182,7 @@ static void count_parts(fg_lot_analysis *analysis) {
 static fg_status analyse_records(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->parts = fg_foil_kind_parts(analysis->lot->settings.design.kind);
   FG_TRY(list_lot_foils(ctx, analysis));
+  FG_TRY(find_scans_of_foils(ctx, analysis));
   count_parts(analysis);
   const fg_record *repeat;
   const char *no_date;

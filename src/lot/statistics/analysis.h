@@ -21,6 +21,8 @@ typedef struct fg_lot_foil {
   const fg_foil *foil; /* of its record */
   fg_verdict verdict;  /* as fg_foil_decide says */
   bool exceeded;       /* a value fails its tolerance */
+  size_t owner;        /* first foil of the lot that is a scan of the same foil; mostly itself */
+  bool again;          /* an earlier scan of the same foil was measured */
   bool row;            /* listed on the page */
   double severity;     /* of the worst value: 1 at its limit; without tolerances in sd of the lot */
   int worst_number;    /* number of the part with the worst value; 0: the whole foil */
@@ -286,6 +288,7 @@ typedef struct fg_lot_analysis {
   fg_quantity_owner parts; /* kind of the foils' parts */
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
+  size_t scanned_again;  /* foils with `again` */
   size_t repeated_scans; /* with the bytes of an earlier one; among those that failed */
   fg_lot_date date;
   size_t invalid_dates; /* cells of the manifest's column that are no date */

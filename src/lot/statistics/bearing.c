@@ -20,8 +20,9 @@ static fg_status add_bearing(fg_context *ctx, fg_lot_analysis *analysis, const c
                             (void **)&(*bearing)->pad);
 }
 
-static bool has_measured_foil(const fg_lot_foil *foil) {
-  return fg_foil_is_measured(foil->foil);
+/* A foil that was scanned again takes no second place. */
+static bool takes_a_place(const fg_lot_foil *foil) {
+  return fg_foil_is_measured(foil->foil) && !foil->again;
 }
 
 /* Assumes bearings of foils in a row, as many as pads; the remainder makes none. */
@@ -29,7 +30,7 @@ static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t pads = analysis->layout.pads, pad = 0;
   const fg_lot_foil *set[FG_BEARING_BUMPS_MAX];
   for (size_t i = 0; i < analysis->foil_count; i++) {
-    if (!has_measured_foil(&analysis->foils[i])) continue;
+    if (!takes_a_place(&analysis->foils[i])) continue;
     set[pad++] = &analysis->foils[i];
     if (pad < pads) continue;
     fg_lot_bearing *bearing;
@@ -92,7 +93,7 @@ static void place_foil(fg_lot_analysis *analysis, const fg_lot_foil *foil,
   const fg_manifest *manifest = &analysis->lot->manifest;
   size_t pad_column = fg_manifest_column(manifest, analysis->lot->settings.pad_column);
   bool bad;
-  if (!has_measured_foil(foil)) return;
+  if (!takes_a_place(foil)) return;
   const char *cell = fg_manifest_cell(manifest, foil->item, pad_column);
   size_t pad = choose_pad(bearing, cell, analysis->layout.pads, &bad);
   analysis->unplaced.bad_pads += bad;
@@ -108,7 +109,7 @@ static fg_status place_by_first(fg_context *ctx, fg_lot_analysis *analysis, size
     const fg_lot_foil *foil = &analysis->foils[i];
     const char *name = fg_manifest_cell(&analysis->lot->manifest, foil->item, column);
     fg_lot_bearing *bearing;
-    analysis->unplaced.without += !*name;
+    analysis->unplaced.without += !*name && !foil->again;
     if (!*name) continue;
     if (first[i] == i) {
       number[i] = analysis->bearing_count;

@@ -33,10 +33,10 @@ static fg_status allocate_pairs(fg_context *ctx, size_t count, pairs *p) {
   return FG_OK;
 }
 
-/* Key of a part: its name in the part's column and its number in the scan. Scans of one part show
- * one foil. */
+/* Key of a part: its name in the part's column, its bearing and its number in the scan. Scans of
+ * one part show one foil; foils of two bearings may share a name (1, 2, 3 of each). */
 typedef struct part {
-  const char *name;
+  const char *name, *bearing;
   int number;
   size_t at; /* in the lot */
 } part;
@@ -44,6 +44,7 @@ typedef struct part {
 static int compare_parts(const void *a, const void *b) {
   const part *p = a, *q = b;
   int order = strcmp(p->name, q->name);
+  if (order == 0) order = strcmp(p->bearing, q->bearing);
   if (order == 0) order = (p->number > q->number) - (p->number < q->number);
   return order ? order : (p->at > q->at) - (p->at < q->at);
 }
@@ -51,6 +52,7 @@ static int compare_parts(const void *a, const void *b) {
 fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, size_t *owner) {
   const fg_lot *lot = analysis->lot;
   size_t column = fg_manifest_column(&lot->manifest, lot->settings.part_column), count = 0;
+  size_t of_bearing = fg_manifest_column(&lot->manifest, lot->settings.bearing_column);
   void *block;
   FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof(part), &block));
   part *parts = block;
@@ -58,12 +60,15 @@ fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, s
     const fg_lot_foil *foil = &analysis->foils[i];
     const char *name =
         column == FG_NO_COLUMN ? "" : fg_manifest_cell(&lot->manifest, foil->item, column);
+    const char *bearing =
+        of_bearing == FG_NO_COLUMN ? "" : fg_manifest_cell(&lot->manifest, foil->item, of_bearing);
     owner[i] = i;
-    if (*name) parts[count++] = (part){name, foil->foil->number, i};
+    if (*name) parts[count++] = (part){name, bearing, foil->foil->number, i};
   }
   fg_sort_items(parts, count, sizeof *parts, compare_parts);
   for (size_t i = 1; i < count; i++)
-    if (!strcmp(parts[i].name, parts[i - 1].name) && parts[i].number == parts[i - 1].number)
+    if (!strcmp(parts[i].name, parts[i - 1].name) && parts[i].number == parts[i - 1].number &&
+        !strcmp(parts[i].bearing, parts[i - 1].bearing))
       owner[parts[i].at] = owner[parts[i - 1].at];
   free(parts);
   return FG_OK;

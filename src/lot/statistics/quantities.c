@@ -50,33 +50,100 @@ static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
-static void append_value(fg_lot_quantity *quantity, size_t foil, double value) {
+/* Values of a quantity as they are collected. Of several scans of a foil the parts of one number
+ * are one value, their mean: the foil was made once. */
+typedef struct collection {
+  const fg_lot_analysis *analysis;
+  fg_lot_quantity *quantity;
+  const size_t *next; /* next scan of the same foil, by foil of the lot; 0: none */
+  double *sum;        /* by number of the part; 0: the whole foil */
+  size_t *count, numbers;
+  int *place; /* by value: number of its part where it is known, else 0 */
+} collection;
+
+static void append_value(const collection *c, size_t foil, int place, double value) {
+  fg_lot_quantity *quantity = c->quantity;
   if (!isfinite(value)) return;
+  c->place[quantity->count] = place;
   quantity->value[quantity->count++] = value;
   quantity->size[foil]++;
 }
 
-static fg_status collect_values(fg_context *ctx, const fg_lot_analysis *analysis,
-                                fg_lot_quantity *quantity) {
-  size_t max = 0;
-  void *block;
-  for (size_t i = 0; i < analysis->foil_count; i++)
-    max += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
-  FG_TRY(fg_memory_allocate(ctx, max, sizeof *quantity->value, &block));
-  quantity->value = block;
-  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *quantity->size, &block));
-  quantity->size = block;
+typedef void take_value(const collection *c, size_t foil, int number, int place, double value);
+
+/* Passes the values of one scan on. */
+static void visit_values(const collection *c, size_t scan, size_t foil, take_value *take) {
+  const fg_quantity_owner owner = c->quantity->owner;
+  const fg_foil *of = c->analysis->foils[scan].foil;
+  if (!fg_foil_is_measured(of)) return;
+  if (owner == FG_QUANTITY_OF_FOIL) take(c, foil, 0, 0, fg_quantity_value(c->quantity->row, of));
+  for (size_t k = 0; k < fg_part_count(of, owner); k++) {
+    const fg_foil_part part = fg_part_at(of, owner, k);
+    if (fg_lot_part_counts(of, owner, &part))
+      take(c, foil, part.number, fg_lot_part_number(of, &part),
+           fg_quantity_value(c->quantity->row, part.object));
+  }
+}
+
+static void take_one(const collection *c, size_t foil, int number, int place, double value) {
+  (void)number;
+  append_value(c, foil, place, value);
+}
+
+static void add_one(const collection *c, size_t foil, int number, int place, double value) {
+  (void)foil, (void)place;
+  if (!isfinite(value) || number < 0) return;
+  c->sum[number] += value;
+  c->count[number]++;
+}
+
+static void collect_foil(const collection *c, size_t foil) {
+  if (!c->next[foil]) {
+    visit_values(c, foil, foil, take_one);
+    return;
+  }
+  bool places = true;
+  for (size_t scan = foil;; scan = c->next[scan]) {
+    visit_values(c, scan, foil, add_one);
+    places = places && !(c->analysis->foils[scan].foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN);
+    if (!c->next[scan]) break;
+  }
+  for (size_t n = 0; n < c->numbers; n++) {
+    if (c->count[n]) append_value(c, foil, places ? (int)n : 0, c->sum[n] / (double)c->count[n]);
+    c->sum[n] = 0;
+    c->count[n] = 0;
+  }
+}
+
+static size_t highest_number(const fg_lot_analysis *analysis, bool of_part) {
+  int highest = 0;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
-    if (!fg_foil_is_measured(foil)) continue;
-    if (quantity->owner == FG_QUANTITY_OF_FOIL)
-      append_value(quantity, i, fg_quantity_value(quantity->row, foil));
-    for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
-      const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
-      if (fg_lot_part_counts(foil, quantity->owner, &part))
-        append_value(quantity, i, fg_quantity_value(quantity->row, part.object));
+    size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
+    for (size_t k = 0; k < parts; k++) {
+      const fg_foil_part part = fg_part_at(foil, analysis->parts, k);
+      int number = of_part ? part.number : fg_lot_part_number(foil, &part);
+      highest = number > highest ? number : highest;
     }
   }
+  return (size_t)highest;
+}
+
+static fg_status collect_values(fg_context *ctx, collection *c) {
+  const fg_lot_analysis *analysis = c->analysis;
+  fg_lot_quantity *quantity = c->quantity;
+  size_t max = 0;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    max += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
+  c->numbers = highest_number(analysis, true) + 1;
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *quantity->value, (void **)&quantity->value));
+  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *quantity->size,
+                            (void **)&quantity->size));
+  FG_TRY(fg_memory_allocate(ctx, max, sizeof *c->place, (void **)&c->place));
+  FG_TRY(fg_memory_allocate(ctx, c->numbers, sizeof *c->sum, (void **)&c->sum));
+  FG_TRY(fg_memory_allocate(ctx, c->numbers, sizeof *c->count, (void **)&c->count));
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    if (analysis->foils[i].owner == i) collect_foil(c, i);
   return FG_OK;
 }
 
@@ -106,20 +173,6 @@ static fg_status describe_values(fg_context *ctx, const fg_lot_settings *setting
   return find_value_median(ctx, quantity->value, quantity->count, &quantity->median);
 }
 
-static size_t highest_number(const fg_lot_analysis *analysis) {
-  int highest = 0;
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    const fg_foil *foil = analysis->foils[i].foil;
-    size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
-    for (size_t k = 0; k < parts; k++) {
-      const fg_foil_part part = fg_part_at(foil, analysis->parts, k);
-      int number = fg_lot_part_number(foil, &part);
-      highest = number > highest ? number : highest;
-    }
-  }
-  return (size_t)highest;
-}
-
 static void add_to_place(fg_lot_place *place, double value) {
   if (!isfinite(value)) return;
   place->count++;
@@ -129,21 +182,17 @@ static void add_to_place(fg_lot_place *place, double value) {
 }
 
 /* Finds mean and sd of each number over the foils (running sums of Welford). */
-static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysis,
-                                 fg_lot_quantity *quantity) {
+static fg_status describe_places(fg_context *ctx, const collection *c) {
+  fg_lot_quantity *quantity = c->quantity;
   void *block;
   if (!fg_owner_is_part(quantity->owner)) return FG_OK;
-  quantity->places = highest_number(analysis);
+  quantity->places = highest_number(c->analysis, false);
   FG_TRY(fg_memory_allocate(ctx, quantity->places, sizeof *quantity->place, &block));
   quantity->place = block;
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    const fg_foil *foil = analysis->foils[i].foil;
-    for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
-      const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
-      int number = fg_lot_part_number(foil, &part);
-      if (number >= 1 && fg_lot_part_counts(foil, quantity->owner, &part))
-        add_to_place(&quantity->place[number - 1], fg_quantity_value(quantity->row, part.object));
-    }
+  for (size_t i = 0; i < quantity->count; i++) {
+    size_t number = c->place[i] > 0 ? (size_t)c->place[i] : 0;
+    if (number >= 1 && number <= quantity->places)
+      add_to_place(&quantity->place[number - 1], quantity->value[i]);
   }
   for (size_t i = 0; i < quantity->places; i++) {
     fg_lot_place *place = &quantity->place[i];
@@ -204,19 +253,12 @@ static double process_sigma(const fg_lot_quantity *quantity) {
   return sqrt(fmax(between, 0) + within);
 }
 
-/* Foil that every scan's foil is, by foil of the analysis. */
-typedef struct lot_owners {
-  fg_lot_analysis *analysis;
-  size_t *owner;
-} lot_owners;
-
-/* `values` are those of the quantity, in groups that belong together. */
-static fg_status judge_groups(fg_context *ctx, double confidence, const double *values,
-                              fg_value_groups groups, fg_lot_quantity *quantity) {
+fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, size_t foils,
+                                  fg_lot_quantity *quantity) {
   if (!quantity->tolerance || !quantity->has_chart || !(quantity->sd > 0)) return FG_OK;
-  const fg_capability_input input = {.values = values,
+  const fg_capability_input input = {.values = quantity->value,
                                      .count = quantity->count,
-                                     .groups = groups,
+                                     .groups = {quantity->size, foils},
                                      .lower = quantity->tolerance->lower,
                                      .upper = quantity->tolerance->upper,
                                      .sigma = process_sigma(quantity),
@@ -229,58 +271,53 @@ static fg_status judge_groups(fg_context *ctx, double confidence, const double *
   return fg_capability_compute(ctx, &input, &quantity->capability);
 }
 
-fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, size_t foils,
-                                  fg_lot_quantity *quantity) {
-  return judge_groups(ctx, confidence, quantity->value, (fg_value_groups){quantity->size, foils},
-                      quantity);
-}
-
-/* Scans of one foil (column `foil`) are one group: the foil was made once. */
-static fg_status judge_foils(fg_context *ctx, const lot_owners *of, fg_lot_quantity *quantity) {
-  size_t foils = of->analysis->foil_count, *size = NULL, *next = NULL, at = 0;
-  double *values = NULL;
-  fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *size, (void **)&size));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *next, (void **)&next));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, quantity->count, sizeof *values, (void **)&values));
-  for (size_t i = 0; i < foils; i++)
-    size[of->owner[i]] += quantity->size[i];
-  for (size_t i = 0; i < foils; at += size[i++])
-    next[i] = at;
-  at = 0;
-  for (size_t i = 0; i < foils; at += quantity->size[i++])
-    for (size_t k = 0; k < quantity->size[i]; k++)
-      values[next[of->owner[i]]++] = quantity->value[at + k];
-  FG_TRY_EXIT(judge_groups(ctx, of->analysis->lot->settings.confidence, values,
-                           (fg_value_groups){size, foils}, quantity));
-exit:
-  free(size);
-  free(next);
-  free(values);
-  return status;
-}
+/* Analysis with the scans of each foil. */
+typedef struct lot_scans {
+  fg_lot_analysis *analysis;
+  size_t *next; /* as in `collection` */
+} lot_scans;
 
 static fg_status analyse_quantity(fg_context *ctx, void *shared, size_t i) {
-  const lot_owners *of = shared;
+  const lot_scans *of = shared;
   fg_lot_analysis *analysis = of->analysis;
   const fg_lot_settings *settings = &analysis->lot->settings;
   fg_lot_quantity *quantity = &analysis->quantities[i];
-  FG_TRY(collect_values(ctx, analysis, quantity));
-  FG_TRY(describe_values(ctx, settings, quantity));
-  FG_TRY(describe_places(ctx, analysis, quantity));
-  FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, analysis->foil_count, quantity));
-  return judge_foils(ctx, of, quantity);
+  collection c = {.analysis = analysis, .quantity = quantity, .next = of->next};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(collect_values(ctx, &c));
+  FG_TRY_EXIT(describe_values(ctx, settings, quantity));
+  FG_TRY_EXIT(describe_places(ctx, &c));
+  FG_TRY_EXIT(fg_lot_chart_quantity(ctx, settings->run_rules, analysis->foil_count, quantity));
+  FG_TRY_EXIT(fg_lot_judge_capability(ctx, settings->confidence, analysis->foil_count, quantity));
+exit:
+  free(c.place);
+  free(c.sum);
+  free(c.count);
+  return status;
+}
+
+/* Links the scans of each foil in their order. */
+static fg_status link_scans(fg_context *ctx, const fg_lot_analysis *analysis, size_t *next) {
+  size_t *last;
+  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *last, (void **)&last));
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    size_t owner = analysis->foils[i].owner;
+    if (owner != i) next[last[owner]] = i;
+    last[owner] = i;
+  }
+  free(last);
+  return FG_OK;
 }
 
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
-  lot_owners of = {.analysis = analysis};
+  lot_scans of = {.analysis = analysis};
   fg_status status = FG_OK;
   FG_TRY_EXIT(list_quantities(ctx, analysis));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof *of.owner, (void **)&of.owner));
-  FG_TRY_EXIT(fg_lot_find_owners(ctx, analysis, of.owner));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof *of.next, (void **)&of.next));
+  FG_TRY_EXIT(link_scans(ctx, analysis, of.next));
   FG_TRY_EXIT(fg_parallel_run(ctx, analysis->lot->threads, analysis->quantity_count,
                               analyse_quantity, &of));
 exit:
-  free(of.owner);
+  free(of.next);
   return status;
 }

@@ -58,6 +58,9 @@ static const fg_member count_rows[] = {
      .words = "scans with the bytes of an earlier one under another name; among "
               "scans_not_measured"},
     {FG_COUNT("foils", fg_lot_analysis, foil_count)},
+    {FG_COUNT("foils_scanned_again", fg_lot_analysis, scanned_again),
+     .words = "of them, scans of a foil that an earlier scan shows (the recipe's part_column): "
+              "statistics count each foil once, by the mean of its scans"},
     {FG_COUNT("bumps", fg_lot_analysis, part_count), .present = fg_lot_has_no_beams},
     {FG_COUNT("beams", fg_lot_analysis, part_count), .present = fg_lot_has_beams,
      .words = "of a cantilever, instead of bumps"},
