@@ -19,7 +19,7 @@ enum {
   RIVAL_FRONT = 3,
   NAMED_MAX = 4,
   RIVALS_MAX = 3,
-  OWN_FORM_RIVALS_MAX = 2,
+  DISC_RIVALS_MAX = 2,
   ROUNDS = 4
 };
 #define REACH 60.0
@@ -127,17 +127,17 @@ static bool holds_rival(const fg_evidence_model *model, const fg_evidence_option
   return false;
 }
 
-static bool is_own_form(const fg_effect *effect, const fg_rival *rival) {
+static bool is_of_one_disc(const fg_effect *effect, const fg_rival *rival) {
   return (rival ? rival->coordinate : effect->coordinate) == FG_EFFECT_COORDINATES;
 }
 
 /* On few discs the own form of each is a rival: three of them, or two beside a field, would explain
  * what lost rows leave. */
 static size_t rivals_max(const fg_evidence_model *model, const fg_evidence_option *option) {
-  bool own = is_own_form(option->effect, option->rival);
+  bool own = is_of_one_disc(option->effect, option->rival);
   for (size_t k = 0; k < model->parts; k++)
-    own = own || is_own_form(model->part[k]->effect, model->part[k]->rival);
-  return own ? OWN_FORM_RIVALS_MAX : RIVALS_MAX;
+    own = own || is_of_one_disc(model->part[k]->effect, model->part[k]->rival);
+  return own ? DISC_RIVALS_MAX : RIVALS_MAX;
 }
 
 /* Counts the named effects of a model, but for a scale: known radii show it beside any of them. */

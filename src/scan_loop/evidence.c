@@ -280,17 +280,17 @@ typedef struct seed_list {
   size_t count;
 } seed_list;
 
-static double noise_of(const fg_scatter *s) {
+static double scatter_noise_um(const fg_scatter *s) {
   return s->row_um * sqrt((s->share > 0 ? s->integral : 1) * fmax(1, s->swell));
 }
 
 /* On discs the search gives every disc's form to the noise, which evidence holds apart: its noise
  * is that of the edge beside them, at its least: a curve in place of a cause leaves more. */
 static fg_status take_edge_noise(fg_context *ctx, fg_scan_loop *loop) {
-  fg_scatter *now = &loop->edge_fit.scatter, *least = &loop->least_scatter;
+  fg_scatter *now = &loop->edge_fit.scatter, *lowest = &loop->scatter_min;
   FG_TRY(fg_edge_fit_find_scatter(ctx, &loop->edge_fit, loop->residual_after));
-  if (!(least->row_um > 0) || noise_of(now) < noise_of(least)) *least = *now;
-  *now = *least;
+  if (!(lowest->row_um > 0) || scatter_noise_um(now) < scatter_noise_um(lowest)) *lowest = *now;
+  *now = *lowest;
   return FG_OK;
 }
 
@@ -452,7 +452,7 @@ static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
 /* A curve of discs stands for a cause without a name, which it may fit badly: nothing is sought
  * about it. */
 static bool stands_for_cause(const fg_scan_loop *loop) {
-  bool curves = loop->edge_fit.discs && loop->set.count > 0 && loop->least_scatter.row_um > 0;
+  bool curves = loop->edge_fit.discs && loop->set.count > 0 && loop->scatter_min.row_um > 0;
   for (size_t e = 0; e < loop->set.count; e++)
     curves = curves && fg_effect_is_free(loop->set.effects[e].kind);
   return curves;
