@@ -169,6 +169,12 @@ P
 expect 0 "" "$program" measure large.png --design pitch.json --model large_model.json -o large_corrected.json
 near "marks through the model of a ripple" "$(member large_corrected.json rms_um)" 0 0.3
 
+# A pitch of 2.5 mm that is stated as 2.54 would be a scale that no flatbed has.
+sed 's/2\.5,/2.54,/' pitch.json >inch.json
+expect 0 "" "$program" loop step.png --design inch.json -o inch_loop.json
+python3 -c "import json; r = json.load(open('inch_loop.json')); assert 'is more than a flatbed' in r['advice'], r['advice']" ||
+  fail "a wrong pitch is taken without a word"
+
 # Beyond the map of a plate U holds the changes that the map has inside.
 cat >part.json <<S
 {"schema": "foilgauge/render/1", "seed": 4, "scanner": {"dpi": 600},
