@@ -72,7 +72,8 @@ typedef struct fg_grid_loop_result {
   fg_grid_held_out *held_out; /* owned */
   size_t held_out_scans;
   size_t scans, boards, marks;
-  bool turned; /* scans of one board, turned by a quarter: scanner and board are told apart */
+  bool turned;  /* scans of one board, turned by a quarter: scanner and board are told apart */
+  double scale; /* of both axes, where boards tell it */
   bool scale_known, axes_known; /* by the boards' stated pitch, or (the axes) by turned scans */
   bool tied;
   fg_grid_claim claim[FG_GRID_CLAIMS];

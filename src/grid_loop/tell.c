@@ -3,7 +3,6 @@
 #include <gsl/gsl_blas.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/text.h"
@@ -77,6 +76,7 @@ static void tell_effect(fg_grid_loop *loop, size_t e) {
   claim->value = unit * a;
   claim->u = unit * sqrt(va);
   if (effect->kind->shapes) claim->shape = effect->shape[0];
+  if (effect->kind->scales) loop->result.scale = claim->value;
   if (effect->kind->columns == 2) {
     double b = gsl_vector_get(loop->solution.estimate, at + 1), size = hypot(a, b);
     double vb = covariance_at(loop, at + 1, at + 1), ab = covariance_at(loop, at, at + 1);
@@ -318,12 +318,6 @@ fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
 /* Published scales of flatbeds are off by no more across an A4 sheet. */
 #define USUAL_SCALE_MAX 0.006
 
-static double scale_of(const fg_grid_loop_result *r) {
-  for (size_t c = 0; c < r->claims; c++)
-    if (!strcmp(r->claim[c].id, "scan.scale")) return r->claim[c].value;
-  return 0;
-}
-
 void fg_grid_loop_say(fg_grid_loop_result *r) {
   const fg_grid_claim *ratio = &r->claim[0];
   if (r->tied && ratio->verdict == FG_GRID_TIED)
@@ -359,11 +353,11 @@ void fg_grid_loop_say(fg_grid_loop_result *r) {
     fg_text_clip(r->advice, sizeof r->advice,
                  "The scale of both axes together stays unknown: state pitch_mm and u_pitch_mm of "
                  "a board that is known.");
-  else if (fabs(scale_of(r)) > USUAL_SCALE_MAX)
+  else if (fabs(r->scale) > USUAL_SCALE_MAX)
     fg_text_clip(r->advice, sizeof r->advice,
                  "A scale of %+.2f %% is more than a flatbed's, at most 0.6 %%: are the stated "
                  "pitch and dpi those of this board and scan?",
-                 100 * scale_of(r));
+                 100 * r->scale);
   else if (r->wave_mm > 0)
     fg_text_clip(
         r->advice, sizeof r->advice,

@@ -215,6 +215,10 @@ static void write_withheld_reasons(const page *p) {
     fputs("accepted causes move the process within these foils: choose a range without them.", out);
   else if (p->choice->by_lots)
     fputs("it is a matter of single foils: choose \"Over: foils\".", out);
+  else if (p->trend->mixed)
+    fputs("these foils were measured by more than one recipe, which may have other tolerances: "
+          "choose a range or a lot of one.",
+          out);
   else if (p->trend->count < STABLE_MIN)
     fprintf(out, "%zu foil%s: too few to say that the process is stable; it takes %d.",
             p->trend->count, fg_plural(p->trend->count), STABLE_MIN);

@@ -189,7 +189,8 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
   if (!trend->choice->taken_out) shift_chart(trend);
   if (!trend->choice->taken_out) shift_values(trend, 1);
   /* Between levels of a cause capability would be that of no state of the process. */
-  if (trend->quantity.stable && !trend->shift)
+  trend->mixed = fg_trend_mixes_recipes(reader, trend);
+  if (trend->quantity.stable && !trend->shift && !trend->mixed)
     judge_trend(settings, trend->count, &trend->quantity);
   return FG_OK;
 }

@@ -13,6 +13,7 @@ typedef struct fg_trend {
   fg_lot_quantity quantity; /* values and chart; `size` is that of each point */
   int64_t *foil;            /* of each point: the foil, or the lot's first; owned */
   size_t before, count, total, first, last;
+  bool mixed;    /* foils of more than one recipe: no tolerance is that of all */
   double *shift; /* of each point by causes, about which limits are taken; NULL: there is none */
   struct fg_cause *cause; /* accepted ones; owned */
   size_t causes;
@@ -50,6 +51,9 @@ enum { FG_TREND_CHANGES = 4 };
 /* Finds the newest FG_TREND_CHANGES of the drawn range; none over lots. */
 size_t fg_trend_changes(sqlite3 *reader, const fg_trend *trend,
                         fg_trend_change change[FG_TREND_CHANGES]);
+
+/* Returns true when the foils of the chart were measured by more than one recipe. */
+bool fg_trend_mixes_recipes(sqlite3 *reader, const fg_trend *trend);
 
 /* Draws the chart as SVG: for wide pages and paper, or for narrow ones. */
 void fg_trend_plot(FILE *out, sqlite3 *reader, const fg_trend *trend, const fg_trend_run *runs,

@@ -39,3 +39,32 @@ size_t fg_trend_changes(sqlite3 *reader, const fg_trend *trend,
   /* A chart without these marks is better than none. */
   return fg_query_end(&unused, &query, "reading the setups") == FG_OK ? count : 0;
 }
+
+static const char recipes_between[] =
+    "SELECT count(DISTINCT recipe) FROM setups WHERE id IN (SELECT setup FROM scans JOIN foils ON "
+    "scans.id = scan WHERE foils.id BETWEEN ? AND ?)";
+static const char other_recipe[] =
+    "SELECT a.recipe <> b.recipe FROM setups AS a, setups AS b"
+    " WHERE a.id = (SELECT setup FROM scans JOIN foils ON scans.id = scan WHERE foils.id = ?)"
+    " AND b.id = (SELECT setup FROM scans JOIN foils ON scans.id = scan WHERE foils.id = ?)";
+
+static int64_t number_of_two(sqlite3 *reader, const char *sql, int64_t first, int64_t second) {
+  fg_context unused;
+  fg_query query;
+  fg_query_begin(reader, sql, &query);
+  fg_query_integer(&query, first);
+  fg_query_integer(&query, second);
+  int64_t number = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  return fg_query_end(&unused, &query, "reading the recipes") == FG_OK ? number : 0;
+}
+
+/* Foils of other parts may lie between those of the chart. */
+bool fg_trend_mixes_recipes(sqlite3 *reader, const fg_trend *trend) {
+  bool mixed = false;
+  if (trend->choice->by_lots || trend->count < 2 ||
+      number_of_two(reader, recipes_between, trend->foil[0], trend->foil[trend->count - 1]) < 2)
+    return false;
+  for (size_t i = 1; i < trend->count && !mixed; i++)
+    mixed = number_of_two(reader, other_recipe, trend->foil[0], trend->foil[i]) > 0;
+  return mixed;
+}

@@ -176,6 +176,20 @@ static void another_setup_is_marked_where_it_began(void **state) {
   assert_has_not(get(f, "/trends", "by=lots", 200), "class=\"change\"");
 }
 
+/* A part of another recipe lies between foils of the first: its tolerances are others. */
+static void capability_is_of_foils_of_one_recipe(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 60, "L1", 3.4);
+  run_sql(f, "UPDATE foils SET lot = 'L2' WHERE id %% 3 = 0");
+  assert_has(get(f, "/trends", "", 200), "<dt>Cpk</dt>");
+  run_sql(f, "INSERT INTO setups VALUES (2, 'y', 'v', '{\"a\": 1}', NULL, NULL, 2);"
+             "UPDATE scans SET setup = 2 WHERE id %% 3 = 0");
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "Not stated: these foils were measured by more than one recipe");
+  assert_has_not(page, "<dt>Cpk</dt>");
+  assert_has(get(f, "/trends", "lot=L1", 200), "<dt>Cpk</dt>");
+}
+
 static void a_crushed_bump_is_in_no_chart(void **state) {
   fixture *f = *state;
   add_foils(f, 1, 30, "L1", 3.4);
@@ -417,6 +431,7 @@ int main(void) {
       TEST(too_few_foils_have_none),
       TEST(a_shift_is_told_since_its_first_foil),
       TEST(another_setup_is_marked_where_it_began),
+      TEST(capability_is_of_foils_of_one_recipe),
       TEST(a_crushed_bump_is_in_no_chart),
       TEST(zooming_moves_no_limit_unless_asked_to),
       TEST(many_points_are_thinned_out_and_none_that_stands_out),
