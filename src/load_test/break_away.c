@@ -51,8 +51,7 @@ const fg_load_flag *fg_break_away_flags(void) {
        "four pulls"},
       {FG_BREAK_WEIGHTS, "weights_differ",
        "pulls of one weight resemble each other more than the line fits the weights (p < 0.1): "
-       "each "
-       "weight counts once; hang every weight anew for every pull"},
+       "each weight counts once; hang every weight anew for every pull"},
       {0, NULL, NULL},
   };
   return flags;

@@ -216,7 +216,7 @@ static double find_coverage_factor(const double *share, double rank, double dof,
   return high;
 }
 
-/* Degrees of freedom are the same at all settings, except by restricted likelihood. */
+/* All settings have the same dof, except by restricted likelihood. */
 static fg_status find_middle_coverage(fg_context *ctx, const fg_experiment *e, fg_simultaneous *s) {
   fg_prediction middle;
   double setting[FG_FORMULA_VARIABLES] = {0}, rank = (double)s->rank;

@@ -452,7 +452,7 @@ static fg_status fit_beside_known_radii(fg_context *ctx, fg_scan_loop *loop) {
 /* A curve of discs stands for a cause without a name, which it may fit badly: nothing is sought
  * about it. */
 static bool stands_for_cause(const fg_scan_loop *loop) {
-  bool curves = loop->edge_fit.discs && loop->set.count > 0 && loop->scatter_min.row_um > 0;
+  bool curves = loop->edge_fit.discs && loop->set.count > 0;
   for (size_t e = 0; e < loop->set.count; e++)
     curves = curves && fg_effect_is_free(loop->set.effects[e].kind);
   return curves;
@@ -470,8 +470,10 @@ fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop) {
                                  (void **)&jacobian));
   FG_TRY_EXIT(fg_memory_allocate(ctx, SEEDS_MAX, sizeof *seeds.set, (void **)&seeds.set));
   seed_by_search(loop, &seeds);
-  for (int round = 0; moved && round < LINEARISATIONS && !stands_for_cause(loop); round++)
+  for (int round = 0; moved && round < LINEARISATIONS; round++) {
     FG_TRY_EXIT(weigh_once(ctx, loop, residual, jacobian, &seeds, round == 0, &moved));
+    moved = moved && !stands_for_cause(loop);
+  }
   if (edge_fit->known_count) FG_TRY_EXIT(fit_beside_known_radii(ctx, loop));
   loop->by_evidence = true;
   loop->scanner_is_suspect = holds_scanner(&loop->explanations);

@@ -266,6 +266,7 @@ static fg_status create_loop(fg_context *ctx, const bool *hold_out, size_t count
   FG_TRY(fg_effect_check_list(ctx, options->without));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
   loop->options = *options;
+  loop->level_half = 0.5;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->before, (void **)&loop->before));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->after, (void **)&loop->after));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->hold_out, (void **)&loop->hold_out));
@@ -326,7 +327,7 @@ exit:
 
 /* A level that was taken before the effects were known may hold a part of them. */
 static bool is_away(const fg_scan_loop *loop) {
-  return fg_model_tone_is_away(&loop->tone, loop->levelled ? loop->level_half : 0.5);
+  return fg_model_tone_is_away(&loop->tone, loop->level_half);
 }
 
 /* From measured scans to the result; frees the loop when it fails. */

@@ -55,10 +55,10 @@ struct fg_scan_loop {
   fg_width_findings width; /* effects that move the strip's edges apart; beside the set in force */
   fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
   fg_model_tone tone;       /* edge level of the discs of known diameter */
-  int levelled;             /* how often the edges were moved to that level, and to where */
-  double level_half;
-  fg_scatter scatter_min; /* of the edges of discs, over the searches by evidence */
-  double gauge_um;        /* standard deviation of known radii, by evidence */
+  int levelled;             /* how often the edges were moved to that level */
+  double level_half;        /* where they are */
+  fg_scatter scatter_min;   /* of the edges of discs, over the searches by evidence */
+  double gauge_um;          /* standard deviation of known radii, by evidence */
   double u_scale; /* relative, by known diameters that show no scale; 0: they do not bound it */
   fg_loop_outcome verdict;
   fg_scan_result result; /* public result */

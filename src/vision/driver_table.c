@@ -66,10 +66,7 @@ interpolate(const float *restrict memory, int32_t size, size_t count, const int3
   for (size_t k = 0; k < count; k++) {
     int32_t whole = (int32_t)steps[k], i = start[k] + whole;
     float f = steps[k] - (float)whole;
-    counts[k] = memory[i - 1] * (-f * (f - 1) * (f - 2) / 6) +
-                memory[i] * ((f + 1) * (f - 1) * (f - 2) / 2) +
-                memory[i + 1] * (-(f + 1) * f * (f - 2) / 2) +
-                memory[i + 2] * ((f + 1) * f * (f - 1) / 6);
+    counts[k] = fg_driven_cubic(memory + i, f);
     rates[k] = memory[i + size] + f * (memory[i + size + 1] - memory[i + size]);
   }
 }

@@ -33,9 +33,20 @@ void fg_driven_tables_fill(const fg_driver *driver, const fg_driver_tone *tone,
                            const double *values, bool single, fg_driven_tables *tables,
                            size_t index);
 
-/* Steps from the start of a table to a place; below 1 or from size - 3 on: beyond it. */
+/* Steps from the start of a table to a place; the table holds those that have counts around them.
+ */
 static inline float fg_driven_table_steps(const fg_driven_table *table, float across_px) {
   return (across_px - (float)table->from_px) / (float)FG_DRIVEN_STEP_PX;
+}
+
+static inline bool fg_driven_table_holds(const fg_driven_table *table, float steps) {
+  return steps >= 1 && steps < (float)(table->size - 3);
+}
+
+/* Cubic through four counts, of which the second is at grid[0], `f` of a step behind it. */
+static inline float fg_driven_cubic(const float *grid, float f) {
+  return grid[-1] * (-f * (f - 1) * (f - 2) / 6) + grid[0] * ((f + 1) * (f - 1) * (f - 2) / 2) +
+         grid[1] * (-(f + 1) * f * (f - 2) / 2) + grid[2] * ((f + 1) * f * (f - 1) / 6);
 }
 
 /* Index of a table's counts in the memory of all. */
@@ -51,12 +62,10 @@ void fg_driven_tables_at(const fg_driven_tables *tables, size_t count, const int
 static inline bool fg_driven_table_at(const fg_driven_table *table, float across_px, float *count,
                                       float *rate) {
   float at = fg_driven_table_steps(table, across_px);
-  if (!(at >= 1) || at >= (float)(table->size - 3)) return false;
+  if (!fg_driven_table_holds(table, at)) return false;
   size_t i = (size_t)at;
   float f = at - (float)i;
-  const float *grid = table->counts + i;
-  *count = grid[-1] * (-f * (f - 1) * (f - 2) / 6) + grid[0] * ((f + 1) * (f - 1) * (f - 2) / 2) +
-           grid[1] * (-(f + 1) * f * (f - 2) / 2) + grid[2] * ((f + 1) * f * (f - 1) / 6);
+  *count = fg_driven_cubic(table->counts + i, f);
   *rate = table->rates[i] + f * (table->rates[i + 1] - table->rates[i]);
   return true;
 }

@@ -59,7 +59,7 @@ static void take_pixel(const fg_driven_tables *tables, size_t table, double half
   if (d > reach_px[side]) return;
   float from_middle = (float)half_px + d;
   float steps = fg_driven_table_steps(own, side ? from_middle : -from_middle);
-  if (!(steps >= 1) || steps >= (float)(own->size - 3)) return;
+  if (!fg_driven_table_holds(own, steps)) return;
   size_t k = batch->count++;
   batch->station[k] = s;
   batch->right[k] = side;
