@@ -66,7 +66,7 @@ interpolate(const float *restrict memory, int32_t size, size_t count, const int3
   for (size_t k = 0; k < count; k++) {
     int32_t whole = (int32_t)steps[k], i = start[k] + whole;
     float f = steps[k] - (float)whole;
-    counts[k] = fg_driven_cubic(memory + i, f);
+    counts[k] = fg_driven_cubic(memory[i - 1], memory[i], memory[i + 1], memory[i + 2], f);
     rates[k] = memory[i + size] + f * (memory[i + size + 1] - memory[i + size]);
   }
 }

@@ -43,10 +43,10 @@ static inline bool fg_driven_table_holds(const fg_driven_table *table, float ste
   return steps >= 1 && steps < (float)(table->size - 3);
 }
 
-/* Cubic through four counts, of which the second is at grid[0], `f` of a step behind it. */
-static inline float fg_driven_cubic(const float *grid, float f) {
-  return grid[-1] * (-f * (f - 1) * (f - 2) / 6) + grid[0] * ((f + 1) * (f - 1) * (f - 2) / 2) +
-         grid[1] * (-(f + 1) * f * (f - 2) / 2) + grid[2] * ((f + 1) * f * (f - 1) / 6);
+/* Cubic through four neighbouring counts, `f` of a step behind the second. */
+static inline float fg_driven_cubic(float a, float b, float c, float d, float f) {
+  return a * (-f * (f - 1) * (f - 2) / 6) + b * ((f + 1) * (f - 1) * (f - 2) / 2) +
+         c * (-(f + 1) * f * (f - 2) / 2) + d * ((f + 1) * f * (f - 1) / 6);
 }
 
 /* Index of a table's counts in the memory of all. */
@@ -65,7 +65,8 @@ static inline bool fg_driven_table_at(const fg_driven_table *table, float across
   if (!fg_driven_table_holds(table, at)) return false;
   size_t i = (size_t)at;
   float f = at - (float)i;
-  *count = fg_driven_cubic(table->counts + i, f);
+  const float *grid = table->counts + i;
+  *count = fg_driven_cubic(grid[-1], grid[0], grid[1], grid[2], f);
   *rate = table->rates[i] + f * (table->rates[i + 1] - table->rates[i]);
   return true;
 }
