@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A second renderer of plates and boards, which shares no code with the program: numpy alone.
 
-A board is a set of marks with true places; a scanner shows place t at m with t = m + d(m). Pixels are the mark's blurred shape at the
-true place of their centre, with noise; `rough` adds what real scanners do: correlated noise, shading, one-sided blur."""
+A board is a set of marks with true places; a scanner shows place t at m with t = m + d(m), pixel by pixel: a mark is bent as the
+scanner bends it, and no mark moves as a point. Pixels are the mark's blurred shape at the true place of their centre, with noise; `rough` adds what real scanners do: correlated noise, shading, one-sided blur."""
 import numpy as np
 from scipy.ndimage import gaussian_filter
 from scipy.special import erf
@@ -55,15 +55,18 @@ class Field:
         a = rng.normal(size=(n, 2)) * rms_um / 1e3 * np.sqrt(2 / n)
 
         def both(x, y):
-            total = [np.zeros_like(x), np.zeros_like(x)]
+            # Sines of sums as products: of a row of x and a column of y none is taken pixel by pixel.
+            total = [0., 0.]
             for i in range(n):
+                sin_y, cos_y = np.sin(k[i, 1] * y), np.cos(k[i, 1] * y)
                 for c in range(2):
-                    total[c] = total[c] + a[i, c] * np.sin(k[i, 0] * x + k[i, 1] * y + phase[i, c])
+                    angle = k[i, 0] * x + phase[i, c]
+                    total[c] = total[c] + a[i, c] * np.sin(angle) * cos_y + a[i, c] * np.cos(angle) * sin_y
             return total[0], total[1]
         return self.add(both)
 
     def __call__(self, x, y):
-        dx, dy = np.zeros_like(x, float), np.zeros_like(x, float)
+        dx = dy = np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
         for part in self.parts:
             a, b = part(x, y)
             dx, dy = dx + a, dy + b
@@ -134,22 +137,14 @@ def render(board, field, origin, turn_deg, size_px, dpi, blur_px=1.2, noise=2., 
     else:
         extent = size if board.kind == 'dots' else size[0]
         reach = int(np.ceil((extent + 6 * s) / mm)) + 2
-    # d is smooth over a mark but for a step or a seam, which is drawn at the mark's own side
-    e, around = 0.01, []
-    for ax, ay in ((0, 0), (e, 0), (-e, 0), (0, e), (0, -e)):
-        around.append(np.stack(field(mx + ax, my + ay)))
-    moves, slope_x, slope_y = around[0], (around[1] - around[2]) / (2 * e), (around[3] - around[4]) / (2 * e)
-    slope_y[:, np.abs(slope_y[1]) > 0.05] = 0
-    slope_x[:, np.abs(slope_x).max(0) > 0.05] = 0
     for k in range(len(tx)):
         i0, j0 = int(round(mx[k] / mm)), int(round(my[k] / mm))
         i1, i2, j1, j2 = max(0, i0 - reach), min(w, i0 + reach + 1), max(0, j0 - reach), min(h, j0 + reach + 1)
         if i1 >= i2 or j1 >= j2:
             continue
-        x, y = np.meshgrid(np.arange(i1, i2) * mm, np.arange(j1, j2) * mm)
-        (dx, dy), gx, gy = moves[:, k], slope_x[:, k], slope_y[:, k]
-        ux = x + dx + gx[0] * (x - mx[k]) + gy[0] * (y - my[k]) - tx[k]
-        uy = y + dy + gx[1] * (x - mx[k]) + gy[1] * (y - my[k]) - ty[k]
+        x, y = np.arange(i1, i2)[None, :] * mm, np.arange(j1, j2)[:, None] * mm
+        dx, dy = field(x, y)
+        ux, uy = x + dx - tx[k], y + dy - ty[k]
         u, v = ux * np.cos(t) + uy * np.sin(t), uy * np.cos(t) - ux * np.sin(t)
         if board.kind == 'chessboard':
             a, b = _phi(u / s), _phi(v / s)
