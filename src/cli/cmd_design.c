@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/design.h"
 #include "foilgauge/design_report.h"
 #include "foilgauge/stiffness.h"
@@ -76,15 +77,6 @@ static const char doc[] =
     "say formula, source and what a model leaves out.\n\n"
     "@exit_done@";
 
-static error_t parse_design_number(const char *name, const char *text, double low, double high,
-                                   double *value, struct argp_state *state) {
-  char *end;
-  *value = strtod(text, &end);
-  if (end == text || *end || !(*value >= low && *value <= high))
-    argp_error(state, "--%s %s: it must be a number from %g to %g", name, text, low, high);
-  return 0;
-}
-
 static error_t parse_sheet(const char *text, fg_board_sheet *sheet, struct argp_state *state) {
   char *end, *after = NULL;
   sheet->width_mm = strtod(text, &end);
@@ -96,38 +88,26 @@ static error_t parse_sheet(const char *text, fg_board_sheet *sheet, struct argp_
   return 0;
 }
 
+/* The bounds of the material are those of a recipe. */
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE('o', design_arguments, outputs.path[OUT_DATA]),
+    FG_CLI_VALUE(OPTION_JSON, design_arguments, json),
+    FG_CLI_VALUE(OPTION_CURVE, design_arguments, curve),
+    FG_CLI_VALUE(OPTION_HTML, design_arguments, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_SVG, design_arguments, outputs.path[OUT_SVG]),
+    FG_CLI_NUMBER(OPTION_MODULUS, design_arguments, material.youngs_modulus_gpa, 1e-3, 1e4),
+    FG_CLI_NUMBER(OPTION_POISSON, design_arguments, material.poisson_ratio, 0, 0.499),
+    FG_CLI_NUMBER(OPTION_FRICTION, design_arguments, material.friction, 0, 10),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, design_arguments, outputs.decimal_comma),
+    {0},
+};
+
 static error_t parse_design_option(int key, char *text, struct argp_state *state) {
   design_arguments *arguments = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case 'o':
-    arguments->outputs.path[OUT_DATA] = text;
-    break;
-  case OPTION_JSON:
-    arguments->json = true;
-    break;
-  case OPTION_CURVE:
-    arguments->curve = true;
-    break;
-  case OPTION_HTML:
-    arguments->outputs.path[OUT_HTML] = text;
-    break;
-  case OPTION_SVG:
-    arguments->outputs.path[OUT_SVG] = text;
-    break;
   case OPTION_SHEET:
     return parse_sheet(text, &arguments->sheet, state);
-  /* The bounds are those of a recipe. */
-  case OPTION_MODULUS:
-    return parse_design_number("youngs-modulus-gpa", text, 1e-3, 1e4,
-                               &arguments->material.youngs_modulus_gpa, state);
-  case OPTION_POISSON:
-    return parse_design_number("poisson-ratio", text, 0, 0.499, &arguments->material.poisson_ratio,
-                               state);
-  case OPTION_FRICTION:
-    return parse_design_number("friction", text, 0, 10, &arguments->material.friction, state);
-  case FG_CLI_DECIMAL_COMMA:
-    arguments->outputs.decimal_comma = true;
-    break;
   case ARGP_KEY_ARG:
     if (arguments->design_path) argp_error(state, "more than one DESIGN: %s", text);
     arguments->design_path = text;

@@ -9,6 +9,7 @@
 #include "cli/die_list.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/die.h"
 #include "foilgauge/die_report.h"
 #include "foilgauge/text.h"
@@ -111,9 +112,24 @@ static void check_end(const die_run *run, const struct argp_state *state) {
              option->name);
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_NUMBER(OPTION_TIP, die_run, said.tip_um, 0, 1e5),
+    FG_CLI_NUMBER(OPTION_FIRST_BUMP, die_run, said.first_bump, 1, 1000),
+    FG_CLI_VALUE(OPTION_LIST, die_run, list_path),
+    FG_CLI_NUMBER(OPTION_U_TIP, die_run, options.u_tip_um, 0, 1e4),
+    FG_CLI_NUMBER(OPTION_U_SCALE, die_run, options.u_scale_ppm, 0, 1e5),
+    FG_CLI_NUMBER(OPTION_MAX_SLOPE, die_run, options.max_slope_deg, 20, 89),
+    FG_CLI_VALUE('d', die_run, design_path),
+    FG_CLI_VALUE('o', die_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, die_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_TABLE, die_run, outputs.path[OUT_TABLE]),
+    {0},
+};
+
 static error_t parse_die_option(int key, char *text, struct argp_state *state) {
   die_run *run = state->input;
   if (key >= OPTION_HALF && key <= OPTION_FORWARD) run->unused = key;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_HALF:
     if (!fg_die_read_half(text, &run->said.half))
@@ -127,39 +143,9 @@ static error_t parse_die_option(int key, char *text, struct argp_state *state) {
     if (!fg_die_read_columns(text, run->said.column))
       argp_error(state, "--columns: '%s' is not two different numbers from 1: 1,3", text);
     break;
-  case OPTION_TIP:
-    run->said.tip_um = fg_cli_number(state, "tip-um", text, 0, 1e5);
-    break;
-  case OPTION_FIRST_BUMP:
-    run->said.first_bump = (int)fg_cli_number(state, "first-bump", text, 1, 1000);
-    break;
   case OPTION_REVERSED:
   case OPTION_FORWARD:
     run->said.reversed = key == OPTION_REVERSED;
-    break;
-  case OPTION_LIST:
-    run->list_path = text;
-    break;
-  case OPTION_U_TIP:
-    run->options.u_tip_um = fg_cli_number(state, "u-tip-um", text, 0, 1e4);
-    break;
-  case OPTION_U_SCALE:
-    run->options.u_scale_ppm = fg_cli_number(state, "u-scale-ppm", text, 0, 1e5);
-    break;
-  case OPTION_MAX_SLOPE:
-    run->options.max_slope_deg = fg_cli_number(state, "max-slope", text, 20, 89);
-    break;
-  case 'd':
-    run->design_path = text;
-    break;
-  case 'o':
-    run->outputs.path[OUT_JSON] = text;
-    break;
-  case OPTION_HTML:
-    run->outputs.path[OUT_HTML] = text;
-    break;
-  case OPTION_TABLE:
-    run->outputs.path[OUT_TABLE] = text;
     break;
   case ARGP_KEY_ARG:
     run->said.path = text;

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/compensation.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_DXF, OUT_CONCAVE, OUT_CONVEX, OUT_COUNT };
@@ -112,29 +113,27 @@ static void name_lots_die(next_run *run, const char *path, struct argp_state *st
 }
 
 /* Options whose text is kept as it is. */
-static const char **find_text_option(next_run *run, int key) {
-  fg_compensation_request *request = &run->request;
-  const struct {
-    int key;
-    const char **text;
-  } rows[] = {
-      {OPTION_TARGET, &request->target},
-      {OPTION_PRIOR, &request->prior},
-      {OPTION_DOE, &request->experiment.runs},
-      {OPTION_DOE_MODEL, &request->experiment.formula},
-      {OPTION_RESPONSE, &request->experiment.response},
-      {OPTION_SETTING, &request->experiment.setting},
-      {'o', &run->outputs.path[OUT_JSON]},
-      {OPTION_HTML, &run->outputs.path[OUT_HTML]},
-      {OPTION_TABLE, &run->outputs.path[OUT_TABLE]},
-      {OPTION_DXF, &run->outputs.path[OUT_DXF]},
-      {OPTION_CONCAVE, &run->outputs.path[OUT_CONCAVE]},
-      {OPTION_CONVEX, &run->outputs.path[OUT_CONVEX]},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    if (rows[i].key == key) return rows[i].text;
-  return NULL;
-}
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE(OPTION_TARGET, next_run, request.target),
+    FG_CLI_VALUE(OPTION_PRIOR, next_run, request.prior),
+    FG_CLI_VALUE(OPTION_DOE, next_run, request.experiment.runs),
+    FG_CLI_VALUE(OPTION_DOE_MODEL, next_run, request.experiment.formula),
+    FG_CLI_VALUE(OPTION_RESPONSE, next_run, request.experiment.response),
+    FG_CLI_VALUE(OPTION_SETTING, next_run, request.experiment.setting),
+    FG_CLI_VALUE('o', next_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, next_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_TABLE, next_run, outputs.path[OUT_TABLE]),
+    FG_CLI_VALUE(OPTION_DXF, next_run, outputs.path[OUT_DXF]),
+    FG_CLI_VALUE(OPTION_CONCAVE, next_run, outputs.path[OUT_CONCAVE]),
+    FG_CLI_VALUE(OPTION_CONVEX, next_run, outputs.path[OUT_CONVEX]),
+    FG_CLI_VALUE(OPTION_COMMON, next_run, request.common),
+    FG_CLI_NUMBER(OPTION_STEP, next_run, request.step_um, 0, 1000),
+    FG_CLI_NUMBER(OPTION_MIN_RADIUS, next_run, request.min_radius_mm, 0, 1e3),
+    FG_CLI_NUMBER(OPTION_MAX_MOVE, next_run, request.max_move_pct, 0.01, 100),
+    FG_CLI_NUMBER(OPTION_FOILS, next_run, request.foils, 1, 1e6),
+    FG_CLI_NUMBER(OPTION_TIP, next_run, tip_um, 0, 1000),
+    {0},
+};
 
 static void check_next_end(const next_run *run, const struct argp_state *state) {
   if (!run->request.lot_count && !run->request.prior)
@@ -145,32 +144,13 @@ static void check_next_end(const next_run *run, const struct argp_state *state) 
 
 static error_t parse_next_option(int key, char *text, struct argp_state *state) {
   next_run *run = state->input;
-  const char **kept = find_text_option(run, key);
-  if (kept) *kept = text;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_LOT:
     add_next_lot(run, text, state);
     break;
   case OPTION_DIE:
     name_lots_die(run, text, state);
-    break;
-  case OPTION_COMMON:
-    run->request.common = true;
-    break;
-  case OPTION_STEP:
-    run->request.step_um = fg_cli_number(state, "step-um", text, 0, 1000);
-    break;
-  case OPTION_MIN_RADIUS:
-    run->request.min_radius_mm = fg_cli_number(state, "min-radius-mm", text, 0, 1e3);
-    break;
-  case OPTION_MAX_MOVE:
-    run->request.max_move_pct = fg_cli_number(state, "max-move-pct", text, 0.01, 100);
-    break;
-  case OPTION_FOILS:
-    run->request.foils = (size_t)fg_cli_number(state, "foils", text, 1, 1e6);
-    break;
-  case OPTION_TIP:
-    run->tip_um = fg_cli_number(state, "tip-um", text, 0, 1000);
     break;
   case ARGP_KEY_ARG:
     argp_error(state, "'%s': a lot's folder is named with --lot", text);
@@ -179,7 +159,7 @@ static error_t parse_next_option(int key, char *text, struct argp_state *state) 
     check_next_end(run, state);
     break;
   default:
-    return kept ? 0 : ARGP_ERR_UNKNOWN;
+    return ARGP_ERR_UNKNOWN;
   }
   return 0;
 }

@@ -11,6 +11,7 @@
 #include "cli/doe_kept_plan.h"
 #include "cli/facts.h"
 #include "cli/runs.h"
+#include "cli/values.h"
 #include "foilgauge/loop_model.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/plan.h"
@@ -186,33 +187,23 @@ static void parse_round(struct argp_state *state, const char *text, doe_argument
 }
 
 /* Options whose text is kept as it is. */
-static const char **text_option(int key, doe_run *run) {
-  doe_arguments *a = &run->arguments;
-  switch (key) {
-  case OPTION_RESPONSE:
-    return &a->options.response;
-  case OPTION_MODEL:
-    return &a->options.formula;
-  case OPTION_BLOCK:
-    return &a->options.block;
-  case OPTION_WHOLE_PLOT:
-    return &a->options.whole_plot;
-  case OPTION_UNCERTAINTY:
-    return &a->options.uncertainty;
-  case OPTION_SCANS:
-    return &a->scans;
-  case 'd':
-    return &a->design_path;
-  case 'o':
-    return &run->outputs.path[OUT_JSON];
-  case OPTION_HTML:
-    return &run->outputs.path[OUT_HTML];
-  case OPTION_PLAN:
-    return &a->plan_path;
-  default:
-    return NULL;
-  }
-}
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE(OPTION_RESPONSE, doe_run, arguments.options.response),
+    FG_CLI_VALUE(OPTION_MODEL, doe_run, arguments.options.formula),
+    FG_CLI_VALUE(OPTION_BLOCK, doe_run, arguments.options.block),
+    FG_CLI_VALUE(OPTION_WHOLE_PLOT, doe_run, arguments.options.whole_plot),
+    FG_CLI_VALUE(OPTION_UNCERTAINTY, doe_run, arguments.options.uncertainty),
+    FG_CLI_VALUE(OPTION_SCANS, doe_run, arguments.scans),
+    FG_CLI_VALUE('d', doe_run, arguments.design_path),
+    FG_CLI_VALUE('o', doe_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, doe_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_PLAN, doe_run, arguments.plan_path),
+    FG_CLI_NUMBER(OPTION_CONFIDENCE, doe_run, arguments.options.confidence, 0.5, 0.9999),
+    FG_CLI_NUMBER(OPTION_DPI, doe_run, arguments.dpi, 1, 1e6),
+    FG_CLI_VALUE(OPTION_ALLOW_LOSSY, doe_run, arguments.allow_lossy),
+    FG_CLI_NUMBER(OPTION_THREADS, doe_run, arguments.threads, 1, 1024),
+    {0},
+};
 
 static void check_arguments(struct argp_state *state, const doe_arguments *a) {
   if (!a->data) argp_error(state, "no DATA.csv was given");
@@ -226,11 +217,7 @@ static void check_arguments(struct argp_state *state, const doe_arguments *a) {
 static error_t parse_doe_option(int key, char *text, struct argp_state *state) {
   doe_run *run = state->input;
   doe_arguments *a = &run->arguments;
-  const char **place = text_option(key, run);
-  if (place) {
-    *place = text;
-    return 0;
-  }
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_CODE:
     parse_code(state, text, a);
@@ -249,18 +236,6 @@ static error_t parse_doe_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_ROUND:
     parse_round(state, text, a);
-    break;
-  case OPTION_CONFIDENCE:
-    a->options.confidence = fg_cli_number(state, "confidence", text, 0.5, 0.9999);
-    break;
-  case OPTION_DPI:
-    a->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
-    break;
-  case OPTION_ALLOW_LOSSY:
-    a->allow_lossy = true;
-    break;
-  case OPTION_THREADS:
-    a->threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
     break;
   case ARGP_KEY_ARG:
     if (a->data) argp_error(state, "more than one DATA.csv: %s", text);

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
+#include "cli/values.h"
 #include "foilgauge/doe.h"
 #include "foilgauge/file.h"
 #include "foilgauge/memory.h"
@@ -83,14 +84,6 @@ static const char doc[] =
     "What a fraction cannot tell apart is said on standard error.\n\n"
     "@exit_done@";
 
-static size_t parse_count(struct argp_state *state, const char *name, const char *text) {
-  char *end;
-  unsigned long value = strtoul(text, &end, 10);
-  if (end == text || *end || *text == '-' || value > FG_PLAN_RUNS)
-    argp_error(state, "--%s: '%s' is not a whole number from 0 to %d", name, text, FG_PLAN_RUNS);
-  return value;
-}
-
 static void add_text(struct argp_state *state, const char **list, size_t *count, const char *text) {
   if (*count == FG_PLAN_FACTORS) argp_error(state, "more than %d: %s", FG_PLAN_FACTORS, text);
   list[(*count)++] = text;
@@ -140,8 +133,21 @@ static void parse_axial(struct argp_state *state, const char *text, plan_argumen
     argp_error(state, "--axial: '%s' is not a number from 0 to 100", text);
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_NUMBER(OPTION_REPLICATES, plan_arguments, options.replicates, 0, FG_PLAN_RUNS),
+    FG_CLI_NUMBER(OPTION_CENTRES, plan_arguments, options.centre_points, 0, FG_PLAN_RUNS),
+    FG_CLI_NUMBER(OPTION_SEED, plan_arguments, options.seed, 0, FG_PLAN_RUNS),
+    FG_CLI_VALUE(OPTION_REPLICATE_BLOCKS, plan_arguments, options.replicate_blocks),
+    FG_CLI_VALUE(OPTION_AXIAL_BLOCK, plan_arguments, options.composite_blocks),
+    FG_CLI_VALUE(OPTION_HTML, plan_arguments, page_path),
+    FG_CLI_VALUE('o', plan_arguments, output_path),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, plan_arguments, decimal_comma),
+    {0},
+};
+
 static error_t parse_plan_option(int key, char *text, struct argp_state *state) {
   plan_arguments *a = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_KIND:
     parse_kind(state, text, a);
@@ -161,35 +167,11 @@ static error_t parse_plan_option(int key, char *text, struct argp_state *state) 
   case OPTION_COLUMN:
     add_text(state, a->column, &a->columns, text);
     break;
-  case OPTION_REPLICATES:
-    a->options.replicates = parse_count(state, "replicates", text);
-    break;
-  case OPTION_CENTRES:
-    a->options.centre_points = parse_count(state, "centre", text);
-    break;
-  case OPTION_SEED:
-    a->options.seed = parse_count(state, "seed", text);
-    break;
   case OPTION_AXIAL:
     parse_axial(state, text, a);
     break;
-  case OPTION_REPLICATE_BLOCKS:
-    a->options.replicate_blocks = true;
-    break;
-  case OPTION_AXIAL_BLOCK:
-    a->options.composite_blocks = true;
-    break;
   case OPTION_ROUND:
     parse_round(state, text, a);
-    break;
-  case OPTION_HTML:
-    a->page_path = text;
-    break;
-  case 'o':
-    a->output_path = text;
-    break;
-  case FG_CLI_DECIMAL_COMMA:
-    a->decimal_comma = true;
     break;
   case ARGP_KEY_ARG:
     argp_error(state, "what is '%s'? factors are given as --factor NAME=LOW:HIGH", text);

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/film.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_SPEEDS, OUT_DRAWS, OUT_ORBIT, OUT_COUNT };
@@ -216,97 +217,9 @@ static void read_mesh(film_run *run, struct argp_state *state, const char *text)
   run->options.cells_axial = (size_t)n[1];
 }
 
-/* Options that are one number: their names with their units, which a message shows. Ranges tell
- * other units: metres, pascals, bars. */
-typedef struct number_option {
-  int key;
-  const char *name;
-  size_t offset;
-  double lowest, highest;
-} number_option;
-
-#define NUMBER(key, name, field, lowest, highest)                                                  \
-  { key, name, offsetof(fg_film_options, field), lowest, highest }
-static const number_option numbers[] = {
-    NUMBER(OPTION_LOAD, "load N", load_n, 1e-6, 1e6),
-    NUMBER(OPTION_LOAD_ANGLE, "load-angle DEG", load_deg, -720, 720),
-    NUMBER(OPTION_SPEED, "speed RPM", speed_rpm, 1, 2e6),
-    NUMBER(OPTION_MASS, "mass KG", rotor_mass_kg, 1e-9, 1e5),
-    NUMBER(OPTION_LENGTH, "length MM", length_mm, 0.1, 5000),
-    NUMBER(OPTION_CLEARANCE, "clearance UM", clearance_um, 1, 5000),
-    NUMBER(OPTION_COMPLIANCE, "compliance", compliance, 0, 1e6),
-    NUMBER(OPTION_LOSS, "loss-factor", loss_factor, 0, 10),
-    NUMBER(OPTION_FRICTION, "friction", material.friction, 0, 10),
-    NUMBER(OPTION_MODULUS, "elastic-modulus GPA", material.youngs_modulus_gpa, 1, 1000),
-    NUMBER(OPTION_PITCH, "pitch DEG", pitch_deg, 1e-3, 360),
-    NUMBER(OPTION_TOP_FOIL, "top-foil-thickness MM", top_foil_mm, 1e-3, 10),
-    NUMBER(OPTION_VISCOSITY, "viscosity UPAS", viscosity_upa_s, 1, 1000),
-    NUMBER(OPTION_AMBIENT, "ambient KPA", ambient_kpa, 5, 50000),
-    NUMBER(OPTION_WITHIN, "within PERCENT", within_pct, 0.1, 100),
-    NUMBER(OPTION_LIFT_OFF, "lift-off RPM", lift_off_rpm, 1, 2e6),
-    NUMBER(OPTION_U_LIFT_OFF, "u-lift-off RPM", u_lift_off_rpm, 0, 2e6),
-    NUMBER(OPTION_U_LOAD, "u-load N", u_load_n, 0, 1e6),
-    NUMBER(OPTION_TOUCHING, "touching UM", touching_um, 0, 1000),
-};
-
-static error_t parse_film_number(int key, const char *text, struct argp_state *state) {
-  film_run *run = state->input;
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-    if (numbers[i].key != key) continue;
-    double value =
-        fg_cli_number(state, numbers[i].name, text, numbers[i].lowest, numbers[i].highest);
-    memcpy((char *)&run->options + numbers[i].offset, &value, sizeof value);
-    return 0;
-  }
-  return ARGP_ERR_UNKNOWN;
-}
-
-static size_t read_count(struct argp_state *state, const char *name, const char *text,
-                         double lowest, double highest) {
-  double value = fg_cli_number(state, name, text, lowest, highest);
-  if (value != floor(value)) argp_error(state, "--%s: '%s' is no whole number", name, text);
-  return (size_t)value;
-}
-
-static error_t parse_film_count(int key, const char *text, struct argp_state *state) {
-  fg_film_options *o = &((film_run *)state->input)->options;
-  switch (key) {
-  case OPTION_PADS:
-    o->pads = read_count(state, "pads", text, 0, FG_BEARING_BUMPS_MAX);
-    return 0;
-  case OPTION_BUMPS:
-    o->bumps_per_pad = read_count(state, "bumps", text, 1, FG_BEARING_BUMPS_MAX);
-    return 0;
-  case OPTION_FIRST:
-    o->first_bump = read_count(state, "first-bump", text, 1, 1000);
-    return 0;
-  case OPTION_DRAWS:
-    o->draws = read_count(state, "draws", text, 1, 1e7);
-    return 0;
-  case OPTION_ORBIT:
-    o->orbit_turns = read_count(state, "orbit", text, 4, FG_FILM_TURNS_MAX);
-    return 0;
-  case OPTION_SEED:
-    o->seed = read_count(state, "seed", text, 0, 9007199254740992.0);
-    return 0;
-  case OPTION_JOBS:
-    o->jobs = (unsigned)read_count(state, "jobs", text, 1, 4096);
-    return 0;
-  default:
-    return parse_film_number(key, text, state);
-  }
-}
-
-static error_t parse_film_file(int key, char *text, struct argp_state *state) {
-  static const int keys[OUT_COUNT] = {
-      'o', OPTION_HTML, OPTION_TEXT, OPTION_SPEEDS_OUT, OPTION_DRAWS_OUT, OPTION_ORBIT_OUT};
-  film_run *run = state->input;
-  for (int i = 0; i < OUT_COUNT; i++)
-    if (keys[i] == key) {
-      run->outputs.path[i] = text;
-      return 0;
-    }
-  return parse_film_count(key, text, state);
+static void take_film_shard(film_run *run, fg_lot_shard shard) {
+  run->options.shard = shard.index;
+  run->options.shards = shard.count;
 }
 
 static void check_film_end(film_run *run, struct argp_state *state) {
@@ -331,28 +244,55 @@ static void check_film_end(film_run *run, struct argp_state *state) {
     argp_error(state, "--compliance states what --model would find: drop one");
 }
 
-static void take_film_shard(film_run *run, fg_lot_shard shard) {
-  run->options.shard = shard.index;
-  run->options.shards = shard.count;
-}
+/* The ranges tell other units: metres, pascals, bars. */
+static const fg_cli_value values[] = {
+    FG_CLI_NUMBER(OPTION_LOAD, film_run, options.load_n, 1e-6, 1e6),
+    FG_CLI_NUMBER(OPTION_LOAD_ANGLE, film_run, options.load_deg, -720, 720),
+    FG_CLI_NUMBER(OPTION_SPEED, film_run, options.speed_rpm, 1, 2e6),
+    FG_CLI_NUMBER(OPTION_MASS, film_run, options.rotor_mass_kg, 1e-9, 1e5),
+    FG_CLI_NUMBER(OPTION_LENGTH, film_run, options.length_mm, 0.1, 5000),
+    FG_CLI_NUMBER(OPTION_CLEARANCE, film_run, options.clearance_um, 1, 5000),
+    FG_CLI_NUMBER(OPTION_COMPLIANCE, film_run, options.compliance, 0, 1e6),
+    FG_CLI_NUMBER(OPTION_LOSS, film_run, options.loss_factor, 0, 10),
+    FG_CLI_NUMBER(OPTION_FRICTION, film_run, options.material.friction, 0, 10),
+    FG_CLI_NUMBER(OPTION_MODULUS, film_run, options.material.youngs_modulus_gpa, 1, 1000),
+    FG_CLI_NUMBER(OPTION_PITCH, film_run, options.pitch_deg, 1e-3, 360),
+    FG_CLI_NUMBER(OPTION_TOP_FOIL, film_run, options.top_foil_mm, 1e-3, 10),
+    FG_CLI_NUMBER(OPTION_VISCOSITY, film_run, options.viscosity_upa_s, 1, 1000),
+    FG_CLI_NUMBER(OPTION_AMBIENT, film_run, options.ambient_kpa, 5, 50000),
+    FG_CLI_NUMBER(OPTION_WITHIN, film_run, options.within_pct, 0.1, 100),
+    FG_CLI_NUMBER(OPTION_LIFT_OFF, film_run, options.lift_off_rpm, 1, 2e6),
+    FG_CLI_NUMBER(OPTION_U_LIFT_OFF, film_run, options.u_lift_off_rpm, 0, 2e6),
+    FG_CLI_NUMBER(OPTION_U_LOAD, film_run, options.u_load_n, 0, 1e6),
+    FG_CLI_NUMBER(OPTION_TOUCHING, film_run, options.touching_um, 0, 1000),
+    FG_CLI_NUMBER(OPTION_PADS, film_run, options.pads, 0, FG_BEARING_BUMPS_MAX),
+    FG_CLI_NUMBER(OPTION_BUMPS, film_run, options.bumps_per_pad, 1, FG_BEARING_BUMPS_MAX),
+    FG_CLI_NUMBER(OPTION_FIRST, film_run, options.first_bump, 1, 1000),
+    FG_CLI_NUMBER(OPTION_DRAWS, film_run, options.draws, 1, 1e7),
+    FG_CLI_NUMBER(OPTION_ORBIT, film_run, options.orbit_turns, 4, FG_FILM_TURNS_MAX),
+    FG_CLI_NUMBER(OPTION_SEED, film_run, options.seed, 0, 9007199254740992.0),
+    FG_CLI_NUMBER(OPTION_JOBS, film_run, options.jobs, 1, 4096),
+    FG_CLI_VALUE('o', film_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, film_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_TEXT, film_run, outputs.path[OUT_TEXT]),
+    FG_CLI_VALUE(OPTION_SPEEDS_OUT, film_run, outputs.path[OUT_SPEEDS]),
+    FG_CLI_VALUE(OPTION_DRAWS_OUT, film_run, outputs.path[OUT_DRAWS]),
+    FG_CLI_VALUE(OPTION_ORBIT_OUT, film_run, outputs.path[OUT_ORBIT]),
+    FG_CLI_VALUE(OPTION_FOILS, film_run, options.foils),
+    FG_CLI_VALUE(OPTION_BORE, film_run, options.bore),
+    FG_CLI_VALUE(OPTION_KEEP, film_run, options.keep),
+    FG_CLI_VALUE(OPTION_MODEL, film_run, options.model),
+    FG_CLI_VALUE(OPTION_SENSITIVITY, film_run, options.sensitivity),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, film_run, outputs.decimal_comma),
+    {0},
+};
 
 static error_t parse_film_option(int key, char *text, struct argp_state *state) {
   film_run *run = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case OPTION_FOILS:
-    run->options.foils = text;
-    return 0;
-  case OPTION_BORE:
-    run->options.bore = text;
-    return 0;
-  case OPTION_KEEP:
-    run->options.keep = text;
-    return 0;
   case OPTION_SHARD:
     take_film_shard(run, fg_cli_shard(state, text));
-    return 0;
-  case OPTION_MODEL:
-    run->options.model = text;
     return 0;
   case OPTION_TOP:
     if (strcmp(text, "stiff") != 0 && strcmp(text, "sagging") != 0)
@@ -368,12 +308,6 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
   case OPTION_MESH:
     read_mesh(run, state, text);
     return 0;
-  case OPTION_SENSITIVITY:
-    run->options.sensitivity = true;
-    return 0;
-  case FG_CLI_DECIMAL_COMMA:
-    run->outputs.decimal_comma = true;
-    return 0;
   case ARGP_KEY_ARG:
     if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
     run->design_path = text;
@@ -382,7 +316,7 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     check_film_end(run, state);
     return 0;
   default:
-    return parse_film_file(key, text, state);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 

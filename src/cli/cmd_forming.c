@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/forming.h"
 
@@ -154,52 +155,30 @@ static int choose_word(struct argp_state *state, const char *option, const char 
   return !strcmp(text, second);
 }
 
-static error_t parse_forming_number(int key, const char *text, struct argp_state *state) {
-  forming_run *run = state->input;
-  switch (key) {
-  case OPTION_TEMPERATURE:
-    run->temperature_C = fg_cli_number(state, "temperature", text, -273, 3000);
-    return 0;
-  case OPTION_TIME:
-    run->hours = fg_cli_number(state, "time", text, 0, 1e6);
-    return 0;
-  case OPTION_PRESSURE:
-    run->pressure_bar = fg_cli_number(state, "pressure", text, 0, 1e5);
-    return 0;
-  case OPTION_LAYERS:
-    run->options.layers = (size_t)fg_cli_number(state, "layers", text, 1, 100000);
-    return 0;
-  case OPTION_STEPS:
-    run->options.steps = (size_t)fg_cli_number(state, "steps", text, 1, 100000);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE(OPTION_DIE, forming_run, die_path),
+    FG_CLI_VALUE(OPTION_MATERIAL, forming_run, material_path),
+    FG_CLI_VALUE(OPTION_SCHEDULE, forming_run, schedule_path),
+    FG_CLI_VALUE(OPTION_FIT, forming_run, fit_path),
+    FG_CLI_VALUE(OPTION_RESPONSE, forming_run, response),
+    FG_CLI_VALUE('o', forming_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, forming_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_TEXT, forming_run, outputs.path[OUT_TEXT]),
+    FG_CLI_VALUE(OPTION_BUMPS, forming_run, outputs.path[OUT_BUMPS]),
+    FG_CLI_VALUE(OPTION_STRIP, forming_run, outputs.path[OUT_STRIP]),
+    FG_CLI_VALUE(OPTION_MATERIAL_OUT, forming_run, outputs.path[OUT_MATERIAL]),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, forming_run, outputs.decimal_comma),
+    FG_CLI_NUMBER(OPTION_TEMPERATURE, forming_run, temperature_C, -273, 3000),
+    FG_CLI_NUMBER(OPTION_TIME, forming_run, hours, 0, 1e6),
+    FG_CLI_NUMBER(OPTION_PRESSURE, forming_run, pressure_bar, 0, 1e5),
+    FG_CLI_NUMBER(OPTION_LAYERS, forming_run, options.layers, 1, 100000),
+    FG_CLI_NUMBER(OPTION_STEPS, forming_run, options.steps, 1, 100000),
+    {0},
+};
 
 static error_t parse_forming_option(int key, char *text, struct argp_state *state) {
   forming_run *run = state->input;
-  const struct {
-    int key;
-    const char **into;
-  } texts[] = {
-      {OPTION_DIE, &run->die_path},
-      {OPTION_MATERIAL, &run->material_path},
-      {OPTION_SCHEDULE, &run->schedule_path},
-      {OPTION_FIT, &run->fit_path},
-      {OPTION_RESPONSE, &run->response},
-      {'o', &run->outputs.path[OUT_JSON]},
-      {OPTION_HTML, &run->outputs.path[OUT_HTML]},
-      {OPTION_TEXT, &run->outputs.path[OUT_TEXT]},
-      {OPTION_BUMPS, &run->outputs.path[OUT_BUMPS]},
-      {OPTION_STRIP, &run->outputs.path[OUT_STRIP]},
-      {OPTION_MATERIAL_OUT, &run->outputs.path[OUT_MATERIAL]},
-  };
-  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-    if (texts[i].key == key) {
-      *texts[i].into = text;
-      return 0;
-    }
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_SHAPE:
     run->options.shape =
@@ -213,9 +192,6 @@ static error_t parse_forming_option(int key, char *text, struct argp_state *stat
   case OPTION_FREE:
     parse_free(state, run, text);
     return 0;
-  case FG_CLI_DECIMAL_COMMA:
-    run->outputs.decimal_comma = true;
-    return 0;
   case ARGP_KEY_ARG:
     if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
     run->design_path = text;
@@ -224,7 +200,7 @@ static error_t parse_forming_option(int key, char *text, struct argp_state *stat
     check_end(run, state);
     return 0;
   default:
-    return parse_forming_number(key, text, state);
+    return ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "cli/loop_source.h"
 #include "cli/output_set.h"
 #include "cli/progress.h"
+#include "cli/values.h"
 #include "foilgauge/file.h"
 #include "foilgauge/loop_model.h"
 
@@ -189,34 +190,32 @@ static void check_source(struct argp_state *state, const fg_loop_source_request 
   if (source->scans && !source->runs) argp_error(state, "--scans belongs to --doe RUNS.csv");
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE(OPTION_TABLE, loop_arguments, source.table),
+    FG_CLI_VALUE(OPTION_LOT, loop_arguments, source.lot),
+    FG_CLI_VALUE(OPTION_DOE, loop_arguments, source.runs),
+    FG_CLI_VALUE(OPTION_SCANS, loop_arguments, source.scans),
+    FG_CLI_VALUE(OPTION_RESPONSE, loop_arguments, spec.response),
+    FG_CLI_VALUE(OPTION_MODEL, loop_arguments, spec.model),
+    FG_CLI_VALUE(OPTION_GROUP, loop_arguments, spec.group),
+    FG_CLI_VALUE(OPTION_ORDER, loop_arguments, spec.order),
+    FG_CLI_VALUE(OPTION_OFFSET, loop_arguments, spec.offset),
+    FG_CLI_VALUE(OPTION_FORMING_MODEL, loop_arguments, source.forming_model),
+    FG_CLI_VALUE(OPTION_DESIGN, loop_arguments, design_path),
+    FG_CLI_VALUE(OPTION_DECLARED, loop_arguments, declared_path),
+    FG_CLI_VALUE(OPTION_HOLD_OUT, loop_arguments, spec.hold_out),
+    FG_CLI_VALUE(OPTION_MODEL_OUT, loop_arguments, outputs.path[FG_LOOP_MODEL]),
+    FG_CLI_VALUE(OPTION_HTML, loop_arguments, outputs.path[FG_LOOP_HTML]),
+    FG_CLI_VALUE('o', loop_arguments, outputs.path[FG_LOOP_JSON]),
+    FG_CLI_NUMBER(OPTION_DPI, loop_arguments, source.dpi, 1, 1e6),
+    FG_CLI_VALUE(OPTION_ALLOW_LOSSY, loop_arguments, source.allow_lossy),
+    FG_CLI_NUMBER(OPTION_THREADS, loop_arguments, source.threads, 1, 1024),
+    {0},
+};
+
 static error_t parse_loop_table_option(int key, char *text, struct argp_state *state) {
   loop_arguments *arguments = state->input;
-  const struct {
-    int key;
-    const char **into;
-  } texts[] = {
-      {OPTION_TABLE, &arguments->source.table},
-      {OPTION_LOT, &arguments->source.lot},
-      {OPTION_DOE, &arguments->source.runs},
-      {OPTION_SCANS, &arguments->source.scans},
-      {OPTION_RESPONSE, &arguments->spec.response},
-      {OPTION_MODEL, &arguments->spec.model},
-      {OPTION_GROUP, &arguments->spec.group},
-      {OPTION_ORDER, &arguments->spec.order},
-      {OPTION_OFFSET, &arguments->spec.offset},
-      {OPTION_FORMING_MODEL, &arguments->source.forming_model},
-      {OPTION_DESIGN, &arguments->design_path},
-      {OPTION_DECLARED, &arguments->declared_path},
-      {OPTION_HOLD_OUT, &arguments->spec.hold_out},
-      {OPTION_MODEL_OUT, &arguments->outputs.path[FG_LOOP_MODEL]},
-      {OPTION_HTML, &arguments->outputs.path[FG_LOOP_HTML]},
-      {'o', &arguments->outputs.path[FG_LOOP_JSON]},
-  };
-  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-    if (texts[i].key == key) {
-      *texts[i].into = text;
-      return 0;
-    }
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_MATTERS:
     parse_loop_number(state, "matters", text, &arguments->matters);
@@ -239,15 +238,6 @@ static error_t parse_loop_table_option(int key, char *text, struct argp_state *s
   case OPTION_WITHOUT:
     if (arguments->source.withouts == FG_LOOP_WITHOUTS) argp_error(state, "too many --without");
     arguments->source.without[arguments->source.withouts++] = text;
-    return 0;
-  case OPTION_DPI:
-    arguments->source.dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
-    return 0;
-  case OPTION_ALLOW_LOSSY:
-    arguments->source.allow_lossy = true;
-    return 0;
-  case OPTION_THREADS:
-    arguments->source.threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
     return 0;
   case ARGP_KEY_ARG:
     argp_error(state, "%s: give the data by --table, --lot or --doe", text);

@@ -11,6 +11,7 @@
 #include "cli/facts.h"
 #include "cli/known.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/foil_kind.h"
 #include "foilgauge/forming.h"
 #include "foilgauge/grid_loop.h"
@@ -168,12 +169,22 @@ static void parse_turns(struct argp_state *state, const char *text, int turns[FG
   }
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE(OPTION_DESIGN, arguments, design_path),
+    FG_CLI_VALUE(OPTION_FORM, arguments, kind),
+    FG_CLI_VALUE(OPTION_FORMING_MODEL, arguments, forming_model),
+    FG_CLI_VALUE(OPTION_ALLOW_LOSSY, arguments, options.allow_lossy),
+    FG_CLI_VALUE(OPTION_SAME, arguments, options.same_foil),
+    FG_CLI_VALUE(OPTION_SAME_PART, arguments, grid.same_part),
+    FG_CLI_VALUE(OPTION_MODEL_OUT, arguments, outputs.path[FG_LOOP_MODEL]),
+    FG_CLI_VALUE(OPTION_HTML, arguments, outputs.path[FG_LOOP_HTML]),
+    FG_CLI_VALUE('o', arguments, outputs.path[FG_LOOP_JSON]),
+    {0},
+};
+
 static error_t parse_grid_option(struct argp_state *state, int key, char *text) {
   arguments *a = state->input;
   switch (key) {
-  case OPTION_SAME_PART:
-    a->grid.same_part = true;
-    return 0;
   case OPTION_TURNED:
     parse_turns(state, text, a->grid.turns);
     return 0;
@@ -205,30 +216,10 @@ static bool parse_run(int key, const char *text, struct argp_state *state,
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case OPTION_DESIGN:
-    a->design_path = text;
-    return 0;
-  case OPTION_FORM:
-    a->kind = text;
-    return 0;
-  case OPTION_FORMING_MODEL:
-    a->forming_model = text;
-    return 0;
-  case OPTION_ALLOW_LOSSY:
-    a->options.allow_lossy = true;
-    return 0;
-  case OPTION_SAME:
-    a->options.same_foil = true;
-    return 0;
   case OPTION_HOLD_OUT:
     add_scan(state, text, true);
-    return 0;
-  case OPTION_MODEL_OUT:
-    a->outputs.path[FG_LOOP_MODEL] = text;
-    return 0;
-  case OPTION_HTML:
-    a->outputs.path[FG_LOOP_HTML] = text;
     return 0;
   case OPTION_SCANNER:
     if (!*text || strlen(text) >= FG_SCANNER_NAME)
@@ -237,9 +228,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_COLOUR_GAP:
     parse_gaps(state, text, a->options.colour_gap_px);
-    return 0;
-  case 'o':
-    a->outputs.path[FG_LOOP_JSON] = text;
     return 0;
   case ARGP_KEY_ARG:
     add_scan(state, text, false);

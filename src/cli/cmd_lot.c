@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/known.h"
+#include "cli/values.h"
 #include "foilgauge/compensation.h"
 #include "foilgauge/file.h"
 #include "foilgauge/lot.h"
@@ -109,77 +110,44 @@ static fg_lot_pages parse_pages(struct argp_state *state, const char *text) {
   return FG_LOT_PAGES_ALL;
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE('o', lot_arguments, folder),
+    FG_CLI_VALUE('d', lot_arguments, design),
+    FG_CLI_NUMBER('j', lot_arguments, jobs, 1, 1024),
+    FG_CLI_VALUE(OPTION_RECIPE, lot_arguments, recipe),
+    FG_CLI_VALUE(OPTION_MODEL, lot_arguments, model),
+    FG_CLI_VALUE(OPTION_SCANNER, lot_arguments, scanner),
+    FG_CLI_VALUE(FG_CLI_FLATBED, lot_arguments, flatbed),
+    FG_CLI_VALUE(OPTION_NAME, lot_arguments, name),
+    FG_CLI_VALUE(OPTION_GROUP, lot_arguments, group),
+    FG_CLI_VALUE(OPTION_CURVE, lot_arguments, curve),
+    FG_CLI_VALUE(OPTION_EXPECTED, lot_arguments, expected),
+    FG_CLI_NUMBER(OPTION_DPI, lot_arguments, dpi, 1, 1e6),
+    FG_CLI_VALUE(OPTION_ALLOW_LOSSY, lot_arguments, allow_lossy),
+    FG_CLI_VALUE(OPTION_RESUME, lot_arguments, resume),
+    FG_CLI_VALUE(OPTION_DRY_RUN, lot_arguments, dry_run),
+    FG_CLI_VALUE(OPTION_PRINT_RECIPE, lot_arguments, print_recipe),
+    FG_CLI_VALUE(OPTION_INDEX, lot_arguments, index),
+    FG_CLI_VALUE(OPTION_CSV, lot_arguments, csv),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, lot_arguments, decimal_comma),
+    {0},
+};
+
 static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
   lot_arguments *arguments = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case 'o':
-    arguments->folder = text;
-    break;
-  case 'd':
-    arguments->design = text;
-    break;
-  case 'j':
-    arguments->jobs = (int)fg_cli_number(state, "jobs", text, 1, 1024);
-    break;
-  case OPTION_RECIPE:
-    arguments->recipe = text;
-    break;
-  case OPTION_MODEL:
-    arguments->model = text;
-    break;
-  case OPTION_SCANNER:
-    arguments->scanner = text;
-    break;
-  case FG_CLI_FLATBED:
-    arguments->flatbed = true;
-    break;
-  case OPTION_NAME:
-    arguments->name = text;
-    break;
-  case OPTION_GROUP:
-    arguments->group = text;
-    break;
-  case OPTION_CURVE:
-    arguments->curve = text;
-    break;
-  case OPTION_EXPECTED:
-    arguments->expected = text;
-    break;
   case OPTION_DIE:
     if (!strchr(text, '=')) argp_error(state, "--die: '%s' is not NAME=FILE.json", text);
     if (arguments->die_count == FG_LOT_DIES_MAX)
       argp_error(state, "--die: at most %d", FG_LOT_DIES_MAX);
     arguments->dies[arguments->die_count++] = text;
     break;
-  case OPTION_DPI:
-    arguments->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
-    break;
-  case OPTION_ALLOW_LOSSY:
-    arguments->allow_lossy = true;
-    break;
-  case OPTION_RESUME:
-    arguments->resume = true;
-    break;
-  case OPTION_DRY_RUN:
-    arguments->dry_run = true;
-    break;
   case OPTION_SHARD:
     arguments->shard = fg_cli_shard(state, text);
     break;
   case OPTION_PAGES:
     arguments->pages = parse_pages(state, text);
-    break;
-  case OPTION_PRINT_RECIPE:
-    arguments->print_recipe = true;
-    break;
-  case OPTION_INDEX:
-    arguments->index = text;
-    break;
-  case OPTION_CSV:
-    arguments->csv = text;
-    break;
-  case FG_CLI_DECIMAL_COMMA:
-    arguments->decimal_comma = true;
     break;
   case ARGP_KEY_ARGS:
     arguments->paths = state->argv + state->next;

@@ -9,6 +9,7 @@
 #include "cli/known.h"
 #include "cli/output_set.h"
 #include "cli/progress.h"
+#include "cli/values.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/report.h"
@@ -120,53 +121,35 @@ static fg_channel parse_channel(struct argp_state *state, const char *text) {
   return FG_CHANNEL_AUTO;
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE('d', measure_run, arguments.design_path),
+    FG_CLI_VALUE('o', measure_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_MODEL, measure_run, arguments.model_path),
+    FG_CLI_VALUE(OPTION_SCANNER, measure_run, arguments.scanner),
+    FG_CLI_VALUE(OPTION_CSV, measure_run, outputs.path[OUT_CSV]),
+    FG_CLI_VALUE(OPTION_POINTS, measure_run, outputs.path[OUT_POINTS]),
+    FG_CLI_VALUE(OPTION_OVERLAY, measure_run, outputs.path[OUT_OVERLAY]),
+    FG_CLI_VALUE(OPTION_HTML, measure_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_FORM, measure_run, arguments.kind),
+    FG_CLI_NUMBER(OPTION_DPI, measure_run, arguments.options.dpi, 1, 1e6),
+    FG_CLI_NUMBER(OPTION_THREADS, measure_run, arguments.options.threads, 1, 1024),
+    FG_CLI_VALUE(OPTION_ALLOW_LOSSY, measure_run, arguments.options.allow_lossy),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, measure_run, outputs.decimal_comma),
+    {0},
+};
+
 static error_t parse_measure_option(int key, char *text, struct argp_state *state) {
   measure_run *run = state->input;
   measure_arguments *arguments = &run->arguments;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case 'd':
-    arguments->design_path = text;
-    break;
-  case 'o':
-    run->outputs.path[OUT_JSON] = text;
-    break;
-  case OPTION_MODEL:
-    arguments->model_path = text;
-    return 0;
-  case OPTION_SCANNER:
-    arguments->scanner = text;
-    return 0;
-  case OPTION_CSV:
-    run->outputs.path[OUT_CSV] = text;
-    break;
-  case OPTION_POINTS:
-    run->outputs.path[OUT_POINTS] = text;
-    break;
-  case OPTION_OVERLAY:
-    run->outputs.path[OUT_OVERLAY] = text;
-    break;
-  case OPTION_HTML:
-    run->outputs.path[OUT_HTML] = text;
-    break;
-  case OPTION_FORM:
-    arguments->kind = text;
-    break;
   case OPTION_GAUGE:
     if (arguments->gauge_count == FG_GAUGES_MAX)
       argp_error(state, "--gauge: more than %d gauges", FG_GAUGES_MAX);
     arguments->gauges[arguments->gauge_count++] = text;
     break;
-  case OPTION_DPI:
-    arguments->options.dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
-    break;
-  case OPTION_THREADS:
-    arguments->options.threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
-    break;
   case OPTION_CHANNEL:
     arguments->options.channel = parse_channel(state, text);
-    break;
-  case OPTION_ALLOW_LOSSY:
-    arguments->options.allow_lossy = true;
     break;
   case OPTION_MAX_PIXELS:
     arguments->options.pixel_cap = (uint64_t)fg_cli_number(state, "max-pixels", text, 1, 1e15);
@@ -174,9 +157,6 @@ static error_t parse_measure_option(int key, char *text, struct argp_state *stat
   case OPTION_MAX_MEMORY:
     arguments->options.memory_cap = (size_t)fg_cli_number(state, "max-memory", text, 1, 1 << 24)
                                     << 20;
-    break;
-  case FG_CLI_DECIMAL_COMMA:
-    run->outputs.decimal_comma = true;
     break;
   case ARGP_KEY_ARGS:
     arguments->scans = state->argv + state->next;

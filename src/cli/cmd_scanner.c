@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/scanner_change.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_COUNT };
@@ -34,18 +35,17 @@ static const char doc[] =
     "exceeded, unless --limit says how large a difference matters.\n\n"
     "@exit_judged@";
 
+static const fg_cli_value values[] = {
+    FG_CLI_NUMBER(OPTION_LIMIT, scanner_run, limit_um, 1e-3, 1e6),
+    FG_CLI_VALUE('o', scanner_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, scanner_run, outputs.path[OUT_HTML]),
+    {0},
+};
+
 static error_t parse_scanner_option(int key, char *text, struct argp_state *state) {
   scanner_run *run = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case OPTION_LIMIT:
-    run->limit_um = fg_cli_number(state, "limit", text, 1e-3, 1e6);
-    return 0;
-  case 'o':
-    run->outputs.path[OUT_JSON] = text;
-    return 0;
-  case OPTION_HTML:
-    run->outputs.path[OUT_HTML] = text;
-    return 0;
   case ARGP_KEY_ARG:
     if (run->models == 2) argp_error(state, "more than two models: %s", text);
     run->model[run->models++] = text;

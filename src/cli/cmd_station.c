@@ -8,6 +8,7 @@
 #include "cli/facts.h"
 #include "cli/interrupt.h"
 #include "cli/pages_options.h"
+#include "cli/values.h"
 #include "foilgauge/station.h"
 #include "foilgauge/text.h"
 
@@ -84,55 +85,34 @@ static const char doc[] =
     "@exit_judged@ So with --once and --export; else 130, by which it is ended.";
 
 /* Options whose text is kept as it is. */
-static bool keep_text(int key, const char *text, station_arguments *arguments) {
-  fg_station_request *request = &arguments->pages.request;
-  const struct {
-    int key;
-    const char **into;
-  } texts[] = {
-      {'d', &arguments->design},
-      {OPTION_RECIPE, &arguments->recipe},
-      {OPTION_EXPORT, &request->export_path},
-      {OPTION_DIGEST_PAGE, &request->digest_page},
-      {OPTION_ORDERS, &request->orders},
-      {OPTION_NAME, &request->name},
-      {OPTION_BACKUP, &request->backup_path},
-      {OPTION_RESTORE, &request->restore_path},
-      {OPTION_HUB, &request->hub},
-      {OPTION_HUB_TOKEN_FILE, &request->hub_token_file},
-  };
-  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-    if (texts[i].key != key) continue;
-    *texts[i].into = text;
-    return true;
-  }
-  return false;
-}
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE('d', station_arguments, design),
+    FG_CLI_VALUE(OPTION_RECIPE, station_arguments, recipe),
+    FG_CLI_VALUE(OPTION_EXPORT, station_arguments, pages.request.export_path),
+    FG_CLI_VALUE(OPTION_DIGEST_PAGE, station_arguments, pages.request.digest_page),
+    FG_CLI_VALUE(OPTION_ORDERS, station_arguments, pages.request.orders),
+    FG_CLI_VALUE(OPTION_NAME, station_arguments, pages.request.name),
+    FG_CLI_VALUE(OPTION_BACKUP, station_arguments, pages.request.backup_path),
+    FG_CLI_VALUE(OPTION_RESTORE, station_arguments, pages.request.restore_path),
+    FG_CLI_VALUE(OPTION_HUB, station_arguments, pages.request.hub),
+    FG_CLI_VALUE(OPTION_HUB_TOKEN_FILE, station_arguments, pages.request.hub_token_file),
+    FG_CLI_VALUE(OPTION_ALLOW_LOSSY, station_arguments, allow_lossy),
+    FG_CLI_VALUE(OPTION_ONCE, station_arguments, pages.request.once),
+    FG_CLI_NUMBER(OPTION_POLL, station_arguments, pages.request.poll_s, 0.1, 3600),
+    FG_CLI_VALUE(OPTION_DIGEST, station_arguments, pages.request.digest),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, station_arguments, pages.request.decimal_comma),
+    {0},
+};
 
 static error_t parse_station_option(int key, char *text, struct argp_state *state) {
   station_arguments *arguments = state->input;
   fg_station_request *request = &arguments->pages.request;
-  if (keep_text(key, text, arguments)) return 0;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case OPTION_ALLOW_LOSSY:
-    arguments->allow_lossy = true;
-    break;
-  case OPTION_ONCE:
-    request->once = true;
-    break;
-  case OPTION_POLL:
-    request->poll_s = fg_cli_number(state, "poll", text, 0.1, 3600);
-    break;
-  case OPTION_DIGEST:
-    request->digest = true;
-    break;
   case OPTION_CONTEXT:
     if (request->context_count == FG_STATION_CONTEXTS)
       argp_error(state, "--context: at most %d", FG_STATION_CONTEXTS);
     arguments->contexts[request->context_count++] = text;
-    break;
-  case FG_CLI_DECIMAL_COMMA:
-    request->decimal_comma = true;
     break;
   case ARGP_KEY_ARG:
     if (request->folder) argp_error(state, "one FOLDER is watched");

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/output_set.h"
+#include "cli/values.h"
 #include "foilgauge/load_report.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/text.h"
@@ -194,39 +195,6 @@ static void read_limit(stiffness_run *run, struct argp_state *state, const char 
   run->options.limits[run->options.limit_count++] = limit;
 }
 
-static error_t parse_output(int key, char *text, stiffness_run *run) {
-  static const int keys[OUT_COUNT] = {'o', OPTION_HTML, OPTION_TEXT, OPTION_CSV, OPTION_TABLE};
-  for (int i = 0; i < OUT_COUNT; i++)
-    if (keys[i] == key) {
-      run->outputs.path[i] = text;
-      return 0;
-    }
-  return ARGP_ERR_UNKNOWN;
-}
-
-static error_t parse_break_away(int key, char *text, struct argp_state *state) {
-  stiffness_run *run = state->input;
-  switch (key) {
-  case OPTION_BREAK_AWAY:
-    keep_status(run, add_break_away(run, text));
-    return 0;
-  case OPTION_LEVER:
-    run->options.lever_mm = fg_cli_number(state, "lever", text, 1e-3, 1e6);
-    return 0;
-  case OPTION_RIG:
-    run->options.rig_n_mm = fg_cli_number(state, "rig-torque", text, 0, 1e12);
-    return 0;
-  case OPTION_U_RIG:
-    run->options.u_rig_n_mm = fg_cli_number(state, "u-rig-torque", text, 0, 1e12);
-    return 0;
-  case OPTION_U_WEIGHT:
-    run->options.u_weight_pct = fg_cli_number(state, "u-weight", text, 0, 100);
-    return 0;
-  default:
-    return parse_output(key, text, run);
-  }
-}
-
 static void check_arguments(const stiffness_run *run, struct argp_state *state) {
   const fg_load_options *o = &run->options;
   if (!run->count && !o->break_away_count) argp_error(state, "no TEST was given");
@@ -236,41 +204,38 @@ static void check_arguments(const stiffness_run *run, struct argp_state *state) 
     argp_error(state, "--u-rig-torque without --rig-torque");
 }
 
+static const fg_cli_value values[] = {
+    FG_CLI_VALUE('o', stiffness_run, outputs.path[OUT_JSON]),
+    FG_CLI_VALUE(OPTION_HTML, stiffness_run, outputs.path[OUT_HTML]),
+    FG_CLI_VALUE(OPTION_TEXT, stiffness_run, outputs.path[OUT_TEXT]),
+    FG_CLI_VALUE(OPTION_CSV, stiffness_run, outputs.path[OUT_CSV]),
+    FG_CLI_VALUE(OPTION_TABLE, stiffness_run, outputs.path[OUT_TABLE]),
+    FG_CLI_NUMBER(OPTION_LEVER, stiffness_run, options.lever_mm, 1e-3, 1e6),
+    FG_CLI_NUMBER(OPTION_RIG, stiffness_run, options.rig_n_mm, 0, 1e12),
+    FG_CLI_NUMBER(OPTION_U_RIG, stiffness_run, options.u_rig_n_mm, 0, 1e12),
+    FG_CLI_NUMBER(OPTION_U_WEIGHT, stiffness_run, options.u_weight_pct, 0, 100),
+    FG_CLI_VALUE(OPTION_BEARING, stiffness_run, said.bearing),
+    FG_CLI_NUMBER(OPTION_AZIMUTH, stiffness_run, said.azimuth_deg, -720, 720),
+    FG_CLI_NUMBER(OPTION_THRESHOLD, stiffness_run, options.threshold_n, 1e-6, 1e6),
+    FG_CLI_NUMBER(OPTION_U_FORCE, stiffness_run, options.u_force_pct, 0, 100),
+    FG_CLI_NUMBER(OPTION_U_DISPLACEMENT, stiffness_run, options.u_displacement_pct, 0, 100),
+    FG_CLI_NUMBER(OPTION_DIAMETER, stiffness_run, options.diameter_mm, 1e-3, 1e6),
+    FG_CLI_NUMBER(OPTION_LENGTH, stiffness_run, options.length_mm, 1e-3, 1e6),
+    FG_CLI_NUMBER(OPTION_AZIMUTH_ZERO, stiffness_run, options.azimuth_zero_deg, -720, 720),
+    FG_CLI_VALUE(OPTION_LOT, stiffness_run, options.lot),
+    FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, stiffness_run, outputs.decimal_comma),
+    {0},
+};
+
 static error_t parse_stiffness_option(int key, char *text, struct argp_state *state) {
   stiffness_run *run = state->input;
+  if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
-  case OPTION_BEARING:
-    run->said.bearing = text;
-    break;
-  case OPTION_AZIMUTH:
-    run->said.azimuth_deg = fg_cli_number(state, "azimuth", text, -720, 720);
-    break;
-  case OPTION_THRESHOLD:
-    run->options.threshold_n = fg_cli_number(state, "threshold", text, 1e-6, 1e6);
-    break;
-  case OPTION_U_FORCE:
-    run->options.u_force_pct = fg_cli_number(state, "u-force", text, 0, 100);
-    break;
-  case OPTION_U_DISPLACEMENT:
-    run->options.u_displacement_pct = fg_cli_number(state, "u-displacement", text, 0, 100);
-    break;
-  case OPTION_DIAMETER:
-    run->options.diameter_mm = fg_cli_number(state, "diameter", text, 1e-3, 1e6);
-    break;
-  case OPTION_LENGTH:
-    run->options.length_mm = fg_cli_number(state, "length", text, 1e-3, 1e6);
-    break;
-  case OPTION_AZIMUTH_ZERO:
-    run->options.azimuth_zero_deg = fg_cli_number(state, "azimuth-zero", text, -720, 720);
+  case OPTION_BREAK_AWAY:
+    keep_status(run, add_break_away(run, text));
     break;
   case OPTION_LIMIT:
     read_limit(run, state, text);
-    break;
-  case OPTION_LOT:
-    run->options.lot = text;
-    break;
-  case FG_CLI_DECIMAL_COMMA:
-    run->outputs.decimal_comma = true;
     break;
   case ARGP_KEY_ARG:
     keep_status(run, add_source(run, text));
@@ -279,7 +244,7 @@ static error_t parse_stiffness_option(int key, char *text, struct argp_state *st
     check_arguments(run, state);
     break;
   default:
-    return parse_break_away(key, text, state);
+    return ARGP_ERR_UNKNOWN;
   }
   return 0;
 }

@@ -57,8 +57,8 @@ expect 64 "like 210x297" "$program" design grid --svg "$work/never.svg" --sheet 
 
 # Stiffness: three models in the table, the JSON and the page; the numbers that a user gives count.
 expect 0 "Heshmat, Walowit and Anno" "$program" design
-expect 64 "it must be a number from 0 to 10" "$program" design --friction -1
-expect 64 "it must be a number from 0 to 0.499" "$program" design --poisson-ratio 0.3x
+expect 64 "is not a number from 0 to 10" "$program" design --friction -1
+expect 64 "is not a number from 0 to 0.499" "$program" design --poisson-ratio 0.3x
 expect 65 "has no bumps" "$program" design "$work/discs.json" --html "$work/never.html"
 [ -e "$work/never.html" ] && fail "a page of a design without bumps"
 expect 0 "<!doctype html>" "$program" design --html -
