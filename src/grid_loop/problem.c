@@ -17,6 +17,14 @@ enum { MAP_INTERVALS = 10, MARKS_PER_SPLINE = 3 };
 /* Nodes of a mark on a smooth field, and columns of a map over them. */
 enum { SMOOTH_NODES = 8, MARK_MAP_MAX = 2 * 5 * 5 };
 
+/* Marks show two waves as one where they have this share of a wave in common. */
+#define ALIKE_SHARE 0.5
+/* Step of frequencies in waves over the region, and steps by which a wave is tried askew. */
+#define ALIKE_STEP 0.25
+enum { ALIKE_STEPS = 8 };
+/* Shortest wave that marks on a turned board tell, pitches. */
+#define TURNED_WAVE 0.7
+
 /* Share of a shape over which its derivative is taken. */
 #define SHAPE_STEP 1e-4
 
@@ -358,13 +366,14 @@ static void find_region(grid_problem *problem) {
   frame->knots = FG_FIELD_COLUMNS;
 }
 
-/* Share of a wave that the marks' places have in common with a wave of the frequency 0. */
-static double window_at(const grid_problem *problem, double frequency) {
+/* Share of a wave of `along` (1/mm along x and y) that the marks' places have in common with one of
+ * the frequency 0. */
+static double window_at(const grid_problem *problem, fg_point along) {
   double cosine = 0, sine = 0, n = 0;
   for (size_t i = 0; i < problem->row_count; i++) {
     const grid_row *row = &problem->rows[i];
     if (i && row->scan == row[-1].scan && row->mark == row[-1].mark) continue;
-    double angle = 2 * M_PI * frequency * row->at.y;
+    double angle = 2 * M_PI * (along.x * row->at.x + along.y * row->at.y);
     cosine += cos(angle);
     sine += sin(angle);
     n++;
@@ -372,11 +381,34 @@ static double window_at(const grid_problem *problem, double frequency) {
   return hypot(cosine, sine) / n;
 }
 
+/* The maximum that the marks have in common with a wave along y, or with one that is a little
+ * askew: what a map leaves looks like those. */
+static double max_window_at(const grid_problem *problem, double frequency, double askew) {
+  double max = 0;
+  for (int i = -ALIKE_STEPS; i <= ALIKE_STEPS; i++)
+    max = fmax(max, window_at(problem, (fg_point){askew * i / ALIKE_STEPS, frequency}));
+  return max;
+}
+
 /* Two waves look alike where the sum of their frequencies is one at which all marks have one phase:
- * on a board in line with the axes, the inverse of the pitch. */
+ * on a board in line with the axes, the inverse of the pitch. On a turned one none does, and waves
+ * are told that are shorter than two pitches, but for those that look like a map's. */
 static void find_alike(grid_problem *problem) {
-  double frequency = 1 / problem->board[0].pitch_mm;
-  problem->alike_per_mm = window_at(problem, frequency) > 0.5 ? frequency : 0;
+  double whole = 1 / problem->board[0].pitch_mm, max = whole / TURNED_WAVE, max_straight = 0;
+  double width = 1 / (problem->model.frame.high_mm[1] - problem->model.frame.low_mm[1]);
+  double step = ALIKE_STEP * width;
+  problem->alike_per_mm = 0;
+  problem->min_wave_mm = 1 / max;
+  for (int i = -(int)(0.5 * whole / step); whole + i * step < max + 2 * width; i++) {
+    double frequency = whole + i * step;
+    double straight = window_at(problem, (fg_point){0, frequency});
+    if (straight > fmax(max_straight, ALIKE_SHARE))
+      problem->alike_per_mm = frequency, max_straight = straight;
+    if (max_window_at(problem, frequency, 2 * width) < ALIKE_SHARE) continue;
+    if (!problem->alike_to_per_mm) problem->alike_from_per_mm = frequency - 1.5 * width;
+    problem->alike_to_per_mm = frequency + 1.5 * width;
+  }
+  if (problem->alike_per_mm > 0) problem->min_wave_mm = 2 / problem->alike_per_mm;
 }
 
 /* Splines over a box of marks; false where there are too few marks for a map. */

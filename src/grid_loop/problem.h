@@ -87,6 +87,8 @@ typedef struct grid_problem {
   grid_board board[FG_GRID_SCANS];
   bool scale_known;
   double alike_per_mm; /* the marks show waves as one whose frequencies have this sum; 0: none */
+  double min_wave_mm;  /* the marks tell no shorter wave from longer ones */
+  double alike_from_per_mm, alike_to_per_mm; /* waves that look like a map's; 0: none */
   grid_model model;
 } grid_problem;
 

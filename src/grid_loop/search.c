@@ -12,6 +12,9 @@
  * over its variance exceeds this. */
 #define CHANCE    1e-3
 #define KEPT_CHI2 30.0
+/* Of a wave of less than two pitches, which looks like what a map leaves: renders of smooth fields
+ * have up to 65. */
+#define KEPT_SHORT_CHI2 200.0
 /* Places on either side at which a shape is tried, and rounds of that, each closer. */
 enum { SCAN_PLACES = 5, SCAN_ROUNDS = 4, LOOSE_ROUNDS = 4 };
 /* A shape that a linear step moves by more than this share of it is not told well enough. */
@@ -64,13 +67,16 @@ static grid_effect candidate_of(const grid_problem *problem, const fg_effect *ki
   return candidate;
 }
 
-/* A ripple of which the marks show less than two places a period could be another one; one that is
- * longer than half the region belongs to a map. */
+/* A ripple is no shorter than the marks tell. A wave that is not the same along x (yaw, a ripple
+ * that grows) has waves of other directions beside it, and what a map leaves looks like them from
+ * two pitches on. A wave that is longer than half the region belongs to a map. */
 static bool is_no_ripple(const grid_problem *problem, const grid_effect *candidate) {
   double length = problem->model.frame.high_mm[1] - problem->model.frame.low_mm[1];
-  return candidate->kind->numbers == FG_EFFECT_WAVE &&
-         (candidate->shape[0] < 2 * problem->board[0].pitch_mm ||
-          candidate->shape[0] > 0.5 * length);
+  double min = problem->min_wave_mm;
+  if (candidate->kind->by_evidence) min = fmax(min, 2 * problem->board[0].pitch_mm);
+  double wave = candidate->shape[0];
+  bool alike = wave * problem->alike_from_per_mm < 1 && wave * problem->alike_to_per_mm > 1;
+  return candidate->kind->numbers == FG_EFFECT_WAVE && (wave < min || wave > 0.5 * length || alike);
 }
 
 /* Moves one shape to the best place of a few about it. Scores have jumps over the places of jumps,
@@ -273,16 +279,23 @@ fg_status fg_grid_loosen_shapes(fg_context *ctx, grid_problem *problem) {
   return FG_OK;
 }
 
+static double kept_chi2(const grid_problem *problem, size_t e) {
+  const grid_effect *effect = &problem->model.effect[e];
+  bool is_short =
+      effect->kind->numbers == FG_EFFECT_WAVE && effect->shape[0] < 2 * problem->board[0].pitch_mm;
+  return is_short ? KEPT_SHORT_CHI2 : KEPT_CHI2;
+}
+
 fg_status fg_grid_prune_effects(fg_context *ctx, grid_problem *problem) {
   size_t own = fg_grid_own_effects(problem);
   for (bool dropped = true; dropped;) {
     grid_solution solution;
     size_t weakest = 0;
-    double min_chi2 = KEPT_CHI2;
+    double min_share = 1;
     FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
     for (size_t e = own; e < problem->model.effects; e++) {
-      double chi2 = fg_grid_effect_chi2(problem, &solution, e);
-      if (chi2 < min_chi2) min_chi2 = chi2, weakest = e;
+      double share = fg_grid_effect_chi2(problem, &solution, e) / kept_chi2(problem, e);
+      if (share < min_share) min_share = share, weakest = e;
     }
     fg_grid_solution_free(&solution);
     dropped = weakest > 0;

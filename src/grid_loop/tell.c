@@ -13,6 +13,8 @@
 #define FOUND_Z    3.0
 #define TIED_SHARE 0.3
 #define U_PRIOR    0.01
+/* A board is turned enough where its rows climb by so many pitches. */
+#define TELLING_PITCHES 1.0
 /* Columns and rows of the reported map. */
 enum { MAP_SIDE_MAX = 15 };
 
@@ -148,6 +150,8 @@ static void tell_likeness(fg_grid_loop *loop) {
     result->short_wave_mm = 1 / likeness;
   else
     result->wave_mm = 0;
+  result->telling_turn_deg = TELLING_PITCHES * problem->board[0].pitch_mm /
+                             (result->high_mm[0] - result->low_mm[0]) * 180 / M_PI;
 }
 
 /* ---- the map ---- */
@@ -362,6 +366,6 @@ void fg_grid_loop_say(fg_grid_loop_result *r) {
     fg_text_clip(
         r->advice, sizeof r->advice,
         "On marks in line with the axes a ripple of %.3g mm looks like the one of %.3g mm: "
-        "a board of a finer pitch tells them apart.",
-        r->short_wave_mm, r->wave_mm);
+        "the board turned by %.0f° and scanned again, or one of a finer pitch, tells them apart.",
+        r->short_wave_mm, r->wave_mm, ceil(r->telling_turn_deg));
 }

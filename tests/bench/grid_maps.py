@@ -135,9 +135,9 @@ def opencv_map(report, field, known, dpi):
 
 def warp(picture, field, mm):
     """A pixel shows its place on the glass plus the field there."""
-    rows, columns = np.mgrid[0:picture.shape[0], 0:picture.shape[1]].astype(float)
-    dx, dy = field((columns * mm).ravel(), (rows * mm).ravel())
-    at = [rows.ravel() + dy / mm, columns.ravel() + dx / mm]
+    rows, columns = np.arange(picture.shape[0], dtype=float)[:, None], np.arange(picture.shape[1], dtype=float)[None, :]
+    dx, dy = field(columns * mm, rows * mm)
+    at = [(rows + dy / mm).ravel(), (columns + dx / mm).ravel()]
     out = ndimage.map_coordinates(picture.astype(np.float32), at, order=3, mode='nearest').reshape(picture.shape)
     return np.clip(np.rint(out), 0, 255).astype(np.uint8)
 

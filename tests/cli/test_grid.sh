@@ -142,7 +142,7 @@ echo 'column,row,x_mm,y_mm,u_um' >short.csv; echo '0,0,0,0,0' >>short.csv
 expect 65 "u_um is 0; it must be positive" "$program" loop odd.png --design short.json -o never.json
 
 # A mark sees the mean over its edges: dots as large as half the pitch leave a ripple its size, and rows lost between a dot's edges are
-# one step. A ripple of little more than a pitch looks like a longer one: that is told.
+# one step. A ripple of little more than a pitch looks like a longer one: that is told, and a board that is turned tells.
 dots() {
   cat >"$1.json" <<S
 {"schema": "foilgauge/render/1", "seed": 6, "scanner": {"dpi": 600}, "effects": [$3],
@@ -154,6 +154,7 @@ S
 echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_mm": 2.5, "u_pitch_mm": 0.00005}' >pitch.json
 dots large 0.4 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 6.1}'
 dots alike 0 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 3.1}'
+dots turned 6 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 3.1}'
 dots step 0.4 '{"id": "scan.row_step", "amplitude_um": 20, "y_mm": 16.6}'
 python3 - <<'P' || fail "ripples and steps on large dots"
 import json
@@ -163,7 +164,10 @@ assert ripple['id'] == 'scan.carriage_ripple' and abs(ripple['shape_mm'] - 6.1) 
 assert abs(ripple['amplitude_um'] - 8) < 4 * ripple['u_amplitude_um'] + 0.02, ripple
 step, = found('step')
 assert step['id'] == 'scan.row_step' and abs(step['amplitude_um'] - 20) < 0.2, step
-assert 'a ripple of 3.1 mm looks like' in json.load(open('alike_loop.json'))['advice'], found('alike')
+advice = json.load(open('alike_loop.json'))['advice']
+assert 'a ripple of 3.1 mm looks like' in advice and 'turned by 6°' in advice, advice
+ripple, = found('turned')
+assert abs(ripple['shape_mm'] - 3.1) < 0.01 and abs(ripple['amplitude_um'] - 8) < 4 * ripple['u_amplitude_um'] + 0.05, ripple
 P
 # The same marks through the model: none of the ripple is left.
 expect 0 "" "$program" measure large.png --design pitch.json --model large_model.json -o large_corrected.json
