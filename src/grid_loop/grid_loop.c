@@ -9,6 +9,9 @@
 #include "grid_loop/grid_loop.h"
 
 enum { DOF_MIN = 3 };
+/* Of a map beside which effects are sought, and of the last one. */
+#define MARKS_PER_SPLINE      3.0
+#define FINE_MARKS_PER_SPLINE 1.5
 /* A map must be more likely than none by this much. */
 #define MAP_LIKELIHOOD 4.0
 
@@ -45,42 +48,83 @@ static fg_status measure_grids(fg_context *ctx, const char *const *paths, size_t
   return FG_OK;
 }
 
-/* Likelihood with the present sizes. */
+/* Minus the logarithm of the likelihood under the present sizes. The amplitudes are integrated
+ * over; their shapes, which were sought, cost as in Schwarz's criterion. */
 static fg_status find_likelihood(fg_context *ctx, const grid_problem *problem, double *value) {
   grid_solution solution;
+  double shapes = 0;
   FG_TRY(fg_grid_solve(ctx, problem, GRID_ALL_ROWS, &solution));
-  *value = solution.minus_log_likelihood;
+  for (size_t e = fg_grid_own_effects(problem); e < problem->model.effects; e++)
+    shapes += (double)problem->model.effect[e].kind->shapes;
+  *value = solution.minus_log_likelihood + 0.5 * shapes * log((double)problem->row_count);
   fg_grid_solution_free(&solution);
   return FG_OK;
 }
 
-/* Listed effects first, beside the boards alone; then the maps, and listed effects again beside
- * them. */
-static fg_status build_model(fg_context *ctx, grid_problem *problem) {
-  bool map = problem->model.has_map, board_map = problem->model.has_board_map;
-  double without, with;
-  problem->model.has_map = problem->model.has_board_map = false;
-  fg_grid_begin_effects(problem);
+/* Lays maps over the marks in place of those in force, if any, drops effects that are none beside
+ * them, and keeps all that where it is more likely. The sizes follow. */
+static fg_status try_maps(fg_context *ctx, grid_problem *problem, double marks_per_spline) {
+  double before, with;
   FG_TRY(fg_grid_find_sizes(ctx, problem));
-  if (map) FG_TRY(fg_grid_add_effects(ctx, problem));
+  FG_TRY(find_likelihood(ctx, problem, &before));
+  const grid_model kept = problem->model;
+  fg_grid_lay_maps(problem, marks_per_spline);
+  if (!problem->model.has_map) return FG_OK;
   FG_TRY(fg_grid_find_sizes(ctx, problem));
-  if (!map) return FG_OK;
-  FG_TRY(find_likelihood(ctx, problem, &without));
-  grid_problem kept = *problem;
-  problem->model.has_map = true;
-  problem->model.has_board_map = board_map;
-  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  FG_TRY(fg_grid_prune_effects(ctx, problem));
+  if (problem->model.effects < kept.effects) FG_TRY(fg_grid_find_sizes(ctx, problem));
   FG_TRY(find_likelihood(ctx, problem, &with));
-  if (without - with < MAP_LIKELIHOOD) {
-    problem->model.has_map = problem->model.has_board_map = false;
-    problem->model.mark_sd = kept.model.mark_sd;
-    problem->model.board_sd = kept.model.board_sd;
-  }
+  if (!kept.has_map && before - with < MAP_LIKELIHOOD) problem->model = kept;
+  return FG_OK;
+}
+
+/* Moves the effects to their best places beside all else, and drops those that are none there. */
+static fg_status place_effects(fg_context *ctx, grid_problem *problem) {
   FG_TRY(fg_grid_refine_effects(ctx, problem));
-  FG_TRY(fg_grid_prune_effects(ctx, problem));
+  return fg_grid_prune_effects(ctx, problem);
+}
+
+/* Listed effects first, beside the boards alone; then coarse maps, and listed effects again beside
+ * them; fine maps last, beside which chips would hide. */
+static fg_status build_from_effects(fg_context *ctx, grid_problem *problem) {
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
   FG_TRY(fg_grid_add_effects(ctx, problem));
-  FG_TRY(fg_grid_refine_effects(ctx, problem));
-  FG_TRY(fg_grid_prune_effects(ctx, problem));
+  FG_TRY(try_maps(ctx, problem, MARKS_PER_SPLINE));
+  FG_TRY(place_effects(ctx, problem));
+  FG_TRY(fg_grid_add_effects(ctx, problem));
+  FG_TRY(place_effects(ctx, problem));
+  return try_maps(ctx, problem, FINE_MARKS_PER_SPLINE);
+}
+
+/* Fine maps first, and listed effects beside them: a smooth field may look like jumps and ripples
+ * where nothing smooth is in the model. */
+static fg_status build_from_maps(fg_context *ctx, grid_problem *problem) {
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  fg_grid_lay_maps(problem, FINE_MARKS_PER_SPLINE);
+  FG_TRY(fg_grid_find_sizes(ctx, problem));
+  FG_TRY(fg_grid_add_effects(ctx, problem));
+  FG_TRY(place_effects(ctx, problem));
+  return fg_grid_find_sizes(ctx, problem);
+}
+
+/* The more likely of both ways. */
+static fg_status build_model(fg_context *ctx, grid_problem *problem) {
+  double by_effects, by_maps;
+  fg_grid_begin_effects(problem);
+  const grid_model empty = problem->model;
+  fg_grid_lay_maps(problem, MARKS_PER_SPLINE);
+  bool map = problem->model.has_map;
+  problem->model = empty;
+  if (!map) return fg_grid_find_sizes(ctx, problem);
+  FG_TRY(build_from_effects(ctx, problem));
+  if (problem->model.effects > fg_grid_own_effects(problem)) {
+    const grid_model kept = problem->model;
+    FG_TRY(find_likelihood(ctx, problem, &by_effects));
+    problem->model = empty;
+    FG_TRY(build_from_maps(ctx, problem));
+    FG_TRY(find_likelihood(ctx, problem, &by_maps));
+    if (by_effects < by_maps) problem->model = kept;
+  }
   FG_TRY(fg_grid_find_sizes(ctx, problem));
   return fg_grid_loosen_shapes(ctx, problem);
 }

@@ -12,8 +12,8 @@
 /* Prior sd of scale, ratio and shear of a board of which nothing is stated: printers err by some
  * parts in a thousand. */
 #define U_PRINTED 0.01
-/* Spacing of the splines of a map, as a share of the region's longer side; marks per spline. */
-enum { MAP_INTERVALS = 10, MARKS_PER_SPLINE = 3 };
+/* Spacing of the splines of a map, as a share of the region's longer side. */
+enum { MAP_INTERVALS = 10 };
 /* Nodes of a mark on a smooth field, and columns of a map over them. */
 enum { SMOOTH_NODES = 8, MARK_MAP_MAX = 2 * 5 * 5 };
 
@@ -411,8 +411,9 @@ static void find_alike(grid_problem *problem) {
   if (problem->alike_per_mm > 0) problem->min_wave_mm = 2 / problem->alike_per_mm;
 }
 
-/* Splines over a box of marks; false where there are too few marks for a map. */
-static bool lay_map(const double low[2], const double high[2], double marks, fg_map_frame *frame) {
+/* Splines over a box of marks; false where `splines` are too few for a map. */
+static bool lay_map(const double low[2], const double high[2], double splines,
+                    fg_map_frame *frame) {
   double size[2] = {high[0] - low[0], high[1] - low[1]}, longer = fmax(size[0], size[1]);
   for (double intervals = MAP_INTERVALS; intervals >= 2; intervals--) {
     for (int axis = 0; axis < 2; axis++) {
@@ -420,12 +421,12 @@ static bool lay_map(const double low[2], const double high[2], double marks, fg_
       frame->high_mm[axis] = high[axis];
       frame->side[axis] = 3 + (size_t)fmax(1, ceil(intervals * size[axis] / longer - 1e-9));
     }
-    if (marks >= MARKS_PER_SPLINE * (double)fg_map_splines(frame)) return true;
+    if ((double)fg_map_splines(frame) <= splines) return true;
   }
   return false;
 }
 
-static void lay_maps(grid_problem *problem) {
+void fg_grid_lay_maps(grid_problem *problem, double marks_per_spline) {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, marks = 0;
   for (size_t i = 0; i < problem->row_count; i++) {
     const grid_row *row = &problem->rows[i];
@@ -436,10 +437,11 @@ static void lay_maps(grid_problem *problem) {
       high[axis] = fmax(high[axis], fg_point_along(row->place, axis));
     }
   }
-  problem->model.has_map = lay_map(problem->model.frame.low_mm, problem->model.frame.high_mm, marks,
-                                   &problem->model.map);
+  double splines = marks / marks_per_spline;
+  problem->model.has_map = lay_map(problem->model.frame.low_mm, problem->model.frame.high_mm,
+                                   splines, &problem->model.map);
   problem->model.has_board_map = problem->model.has_map && problem->model.turned &&
-                                 lay_map(low, high, marks, &problem->model.board_map);
+                                 lay_map(low, high, splines, &problem->model.board_map);
 }
 
 fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measurements, size_t count,
@@ -459,7 +461,6 @@ fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measureme
   number_groups(problem);
   find_region(problem);
   find_alike(problem);
-  lay_maps(problem);
   return FG_OK;
 }
 

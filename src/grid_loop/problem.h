@@ -108,6 +108,9 @@ fg_status fg_grid_problem_build(fg_context *ctx, const fg_measurement *measureme
                                 const fg_grid_loop_options *options, grid_problem *problem);
 void fg_grid_problem_free(grid_problem *problem);
 
+/* Lays the splines of the maps over the marks; no map where there are too few. */
+void fg_grid_lay_maps(grid_problem *problem, double marks_per_spline);
+
 /* Finds how every scan's lattice lies on the first one's board. */
 fg_status fg_grid_match_scans(fg_context *ctx, const fg_measurement *measurements, size_t count,
                               const fg_grid_loop_options *options, grid_problem *problem);

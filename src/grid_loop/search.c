@@ -15,6 +15,8 @@
 /* Of a wave of less than two pitches, which looks like what a map leaves: renders of smooth fields
  * have up to 65. */
 #define KEPT_SHORT_CHI2 200.0
+/* Longest ripple as a share of the region along y. */
+#define WAVE_MAX_SHARE 0.9
 /* Places on either side at which a shape is tried, and rounds of that, each closer. */
 enum { SCAN_PLACES = 5, SCAN_ROUNDS = 4, LOOSE_ROUNDS = 4 };
 /* A shape that a linear step moves by more than this share of it is not told well enough. */
@@ -69,14 +71,15 @@ static grid_effect candidate_of(const grid_problem *problem, const fg_effect *ki
 
 /* A ripple is no shorter than the marks tell. A wave that is not the same along x (yaw, a ripple
  * that grows) has waves of other directions beside it, and what a map leaves looks like them from
- * two pitches on. A wave that is longer than half the region belongs to a map. */
+ * two pitches on. A wave of which the region holds not one period belongs to a map. */
 static bool is_no_ripple(const grid_problem *problem, const grid_effect *candidate) {
   double length = problem->model.frame.high_mm[1] - problem->model.frame.low_mm[1];
   double min = problem->min_wave_mm;
   if (candidate->kind->by_evidence) min = fmax(min, 2 * problem->board[0].pitch_mm);
   double wave = candidate->shape[0];
   bool alike = wave * problem->alike_from_per_mm < 1 && wave * problem->alike_to_per_mm > 1;
-  return candidate->kind->numbers == FG_EFFECT_WAVE && (wave < min || wave > 0.5 * length || alike);
+  return candidate->kind->numbers == FG_EFFECT_WAVE &&
+         (wave < min || wave > WAVE_MAX_SHARE * length || alike);
 }
 
 /* Moves one shape to the best place of a few about it. Scores have jumps over the places of jumps,

@@ -142,7 +142,8 @@ echo 'column,row,x_mm,y_mm,u_um' >short.csv; echo '0,0,0,0,0' >>short.csv
 expect 65 "u_um is 0; it must be positive" "$program" loop odd.png --design short.json -o never.json
 
 # A mark sees the mean over its edges: dots as large as half the pitch leave a ripple its size, and rows lost between a dot's edges are
-# one step. A ripple of little more than a pitch looks like a longer one: that is told, and a board that is turned tells.
+# one step. A ripple of little more than a pitch looks like a longer one: that is told, and a board that is turned tells. A ripple
+# that is nearly as long as the board is no row of steps.
 dots() {
   cat >"$1.json" <<S
 {"schema": "foilgauge/render/1", "seed": 6, "scanner": {"dpi": 600}, "effects": [$3],
@@ -155,6 +156,7 @@ echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_m
 dots large 0.4 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 6.1}'
 dots alike 0 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 3.1}'
 dots turned 6 '{"id": "scan.carriage_ripple", "amplitude_um": 8, "period_mm": 3.1}'
+dots slow 1 '{"id": "scan.carriage_ripple", "amplitude_um": 15, "period_mm": 21}'
 dots step 0.4 '{"id": "scan.row_step", "amplitude_um": 20, "y_mm": 16.6}'
 python3 - <<'P' || fail "ripples and steps on large dots"
 import json
@@ -162,6 +164,8 @@ found = lambda name: [c for c in json.load(open(name + '_loop.json'))['claims'] 
 ripple, = found('large')
 assert ripple['id'] == 'scan.carriage_ripple' and abs(ripple['shape_mm'] - 6.1) < 0.01, ripple
 assert abs(ripple['amplitude_um'] - 8) < 4 * ripple['u_amplitude_um'] + 0.02, ripple
+ripple, = found('slow')
+assert abs(ripple['shape_mm'] - 21) < 0.1 and abs(ripple['amplitude_um'] - 15) < 0.2, ripple
 step, = found('step')
 assert step['id'] == 'scan.row_step' and abs(step['amplitude_um'] - 20) < 0.2, step
 advice = json.load(open('alike_loop.json'))['advice']
