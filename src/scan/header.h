@@ -37,6 +37,9 @@ typedef struct fg_scan_header {
   char warning[256];     /* odd, but no error; empty: none */
 } fg_scan_header;
 
+/* Warning of a file whose foils beyond the first image are not measured. */
+#define FG_SCAN_MORE_IMAGES "it holds more than one image: only the first is read"
+
 /* Appends an oddity to a warning of `size` bytes. */
 void fg_scan_warn(char *warning, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

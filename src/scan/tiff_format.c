@@ -190,8 +190,7 @@ static void note_oddities(const fg_tiff *r, fg_scan_header *header) {
   uint16_t orientation = ORIENTATION_TOPLEFT;
   fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_ORIENTATION, &orientation);
   if (!fg_libtiff.LastDirectory(r->main.tiff))
-    fg_scan_warn(header->warning, sizeof header->warning,
-                 "it holds more than one image: only the first is read");
+    fg_scan_warn(header->warning, sizeof header->warning, FG_SCAN_MORE_IMAGES);
   if (orientation != ORIENTATION_TOPLEFT)
     fg_scan_warn(
         header->warning, sizeof header->warning,
