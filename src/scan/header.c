@@ -2,14 +2,30 @@
 #include "scan/header.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
 
 #define SNAP_DPI   0.02
+#define ROUND_DPI  50.0 /* resolutions of scanners are multiples of it */
 #define ADVICE_DPI "give the resolution with --dpi"
 
-/* pHYs counts whole pixels per metre, so 4800 dpi = 188976.38 per metre reads as 4799.99. */
-static double snap_dpi(double dpi) {
-  double whole = round(dpi);
-  return fabs(dpi - whole) <= SNAP_DPI ? whole : dpi;
+void fg_scan_warn(char *warning, size_t size, const char *format, ...) {
+  va_list values;
+  size_t used = strlen(warning);
+  if (used > 0 && used + 2 < size) used += (size_t)snprintf(warning + used, size - used, "; ");
+  va_start(values, format);
+  vsnprintf(warning + used, size - used, format, values);
+  va_end(values);
+}
+
+/* pHYs counts whole pixels per metre, so 4800 dpi = 188976.38 per metre reads as 4799.99. Of whole
+ * dots per cm, rounded or cut off, 1200 dpi = 472.44 per cm reads as 1198.88: the round number
+ * within one dot is the scanner's. */
+static double snap_dpi(double dpi, double step) {
+  double whole = round(dpi), round_number = ROUND_DPI * round(dpi / ROUND_DPI);
+  if (fabs(dpi - whole) <= SNAP_DPI) return whole;
+  return fabs(dpi - round_number) < step ? round_number : dpi;
 }
 
 static bool is_plausible(double dpi) {
@@ -54,6 +70,11 @@ fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_he
   }
   FG_TRY(check_file(ctx, name, header));
   for (int axis = 0; axis < 2; axis++)
-    info->dpi[axis] = snap_dpi(header->dpi[axis]);
+    info->dpi[axis] = snap_dpi(header->dpi[axis], header->dpi_step);
+  if (fabs(info->dpi[0] - header->dpi[0]) > SNAP_DPI ||
+      fabs(info->dpi[1] - header->dpi[1]) > SNAP_DPI)
+    fg_scan_warn(info->warning, sizeof info->warning,
+                 "it counts whole dots per cm, %.6g × %.6g dpi: %.6g × %.6g were taken",
+                 header->dpi[0], header->dpi[1], info->dpi[0], info->dpi[1]);
   return FG_OK;
 }

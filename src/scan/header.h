@@ -30,11 +30,19 @@ typedef struct fg_scan_header {
   fg_scan_colour palette[256];
   double dpi[2];         /* stated in the file, x and y; NaN when not stated */
   const char *no_dpi;    /* then: the reason, in words; NULL: the format has no resolution */
+  double dpi_step;       /* of one dot per cm where the file counts whole ones; else 0 */
   char dpi_source[64];   /* the field that states it, for error texts */
   double bytes_min;      /* min size of the file for its image; 0: not known */
   uint64_t memory_bytes; /* memory of the reader: a whole image, a row of tiles */
   char warning[256];     /* odd, but no error; empty: none */
 } fg_scan_header;
+
+/* Warning of a file whose foils beyond the first image are not measured. */
+#define FG_SCAN_MORE_IMAGES "it holds more than one image: only the first is read"
+
+/* Appends an oddity to a warning of `size` bytes. */
+void fg_scan_warn(char *warning, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Fills dpi and dpi_file of `info`. `dpi` 0 uses the file's. Errors as fg_scan_open's. */
 fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_header *header,

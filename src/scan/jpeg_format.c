@@ -54,6 +54,7 @@ static void fill_resolution(const fg_jpeg_header *jpeg, fg_scan_header *header) 
     if (jfif && is_contradiction(header->dpi[axis], exif[axis]))
       header->no_dpi = "its JFIF header and its EXIF data contradict each other";
   }
+  if (jfif && jpeg->density_unit == 2) header->dpi_step = 2.54;
   if (!(header->dpi[0] > 0 && header->dpi[1] > 0))
     header->no_dpi = "no density in its JFIF header, no XResolution and YResolution in EXIF data";
   if (header->no_dpi) header->dpi[0] = header->dpi[1] = NAN;
@@ -74,9 +75,10 @@ static void fill_header(const fg_jpeg_header *jpeg, bool luminance, fg_scan_head
   double bits = jpeg->whole ? BITS_PER_BLOCK_PROGRESSIVE : BITS_PER_BLOCK;
   if (!jpeg->arithmetic) header->bytes_min = (double)jpeg->blocks * bits / 8;
   if (jpeg->exif.orientation > 1)
-    snprintf(header->warning, sizeof header->warning,
-             "its orientation tag (%d) is left alone: positions are those of the rows as stored",
-             jpeg->exif.orientation);
+    fg_scan_warn(
+        header->warning, sizeof header->warning,
+        "its orientation tag (%d) is left alone: positions are those of the rows as stored",
+        jpeg->exif.orientation);
 }
 
 static fg_status open_jpeg(fg_context *ctx, fg_source *source, const fg_scan_options *options,

@@ -181,6 +181,7 @@ static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
   header->no_dpi = NULL;
   header->dpi[0] = (double)x * units[unit].per_inch;
   header->dpi[1] = (double)y * units[unit].per_inch;
+  if (unit == RESUNIT_CENTIMETER && x == floorf(x) && y == floorf(y)) header->dpi_step = 2.54;
   snprintf(header->dpi_source, sizeof header->dpi_source, "XResolution %g, YResolution %g per %s",
            (double)x, (double)y, units[unit].name);
 }
@@ -188,13 +189,13 @@ static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
 static void note_oddities(const fg_tiff *r, fg_scan_header *header) {
   uint16_t orientation = ORIENTATION_TOPLEFT;
   fg_libtiff.GetFieldDefaulted(r->main.tiff, TIFFTAG_ORIENTATION, &orientation);
+  if (!fg_libtiff.LastDirectory(r->main.tiff))
+    fg_scan_warn(header->warning, sizeof header->warning, FG_SCAN_MORE_IMAGES);
   if (orientation != ORIENTATION_TOPLEFT)
-    snprintf(header->warning, sizeof header->warning,
-             "its orientation tag (%u) is left alone: positions are those of the rows as stored",
-             orientation);
-  else if (!fg_libtiff.LastDirectory(r->main.tiff))
-    snprintf(header->warning, sizeof header->warning,
-             "it holds more than one image: only the first is read");
+    fg_scan_warn(
+        header->warning, sizeof header->warning,
+        "its orientation tag (%u) is left alone: positions are those of the rows as stored",
+        orientation);
 }
 
 static fg_status read_tags(fg_context *ctx, fg_tiff *r, const fg_scan_options *options,

@@ -103,9 +103,10 @@ static void note_counts(const fg_tiff *r, const uint64_t *counts, fg_scan_header
     wrong = counts[strip] != rows * plane_row_bytes(r);
   }
   if (wrong)
-    snprintf(header->warning, sizeof header->warning,
-             "the byte counts of its strips are wrong (beyond 4 GiB they wrap round); the rows are "
-             "taken as they follow");
+    fg_scan_warn(
+        header->warning, sizeof header->warning,
+        "the byte counts of its strips are wrong (beyond 4 GiB they wrap round); the rows are "
+        "taken as they follow");
 }
 
 static fg_status plan_direct(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {

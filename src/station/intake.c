@@ -3,6 +3,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,6 +17,7 @@
 #include "foilgauge/measure.h"
 #include "foilgauge/scan.h"
 #include "scan/format.h"
+#include "scan/header.h"
 #include "station/check.h"
 #include "station/keep.h"
 #include "station/lot_content.h"
@@ -159,13 +162,26 @@ static bool is_unchanged(const intake *at) {
          (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec == at->file.modified_ns;
 }
 
-/* Adds to the card's words that the scan is lossy. */
-static void note_lossy(const fg_measurement *measurement, char *words) {
+static void append_card_words(char *words, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+static void append_card_words(char *words, const char *format, ...) {
+  char more[WORDS];
+  va_list values;
   size_t used = strlen(words);
+  va_start(values, format);
+  vsnprintf(more, sizeof more, format, values);
+  va_end(values);
+  fg_text_clip(words + used, WORDS - used, "%s%s", used ? "; " : "", more);
+}
+
+/* Adds to the card's words that the scan is lossy, or that foils may be missing. */
+static void note_file(const fg_measurement *measurement, char *words) {
   if (measurement->jpeg_quality)
-    fg_text_clip(words + used, WORDS - used,
-                 "%scompressed with loss (JPEG, quality %d): uncertainties are wider for it",
-                 used ? "; " : "", measurement->jpeg_quality);
+    append_card_words(words,
+                      "compressed with loss (JPEG, quality %d): uncertainties are wider for it",
+                      measurement->jpeg_quality);
+  if (strstr(measurement->warning, FG_SCAN_MORE_IMAGES))
+    append_card_words(words, "it holds more than one image: only the first was measured");
 }
 
 static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *measurement) {
@@ -177,7 +193,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   bool by_button = fg_station_is_scanned(at->name);
   FG_TRY(fg_order_apply(ctx, station, &at->order, by_button, &at->named));
   FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
-  note_lossy(measurement, at->words);
+  note_file(measurement, at->words);
   const fg_station_scan kept = {.file = at->file,
                                 .source = by_button ? "scanner" : "folder",
                                 .named = &at->named,

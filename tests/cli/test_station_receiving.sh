@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A writer that pauses is waited for: RECEIVING, no card; when nothing more comes, the error. A scan
-# that comes again under the serial number of another foil is no measurement of that foil.
+# that comes again under the serial number of another foil is no measurement of that foil. Of a file
+# of two images the page says that it shows one.
 # Usage: test_station_receiving.sh PROGRAM
 name=test_station_receiving
 . "$(dirname "$0")/../support/station.sh"
@@ -98,6 +99,41 @@ wait_until(lambda: call() == ("MEASURED BEFORE", "7_1.png"))
 shutil.copy(work + "/2.png", folder + "7_2.PNG")
 wait_until(lambda: call() == ("MEASURED BEFORE", "7_2.PNG"))
 assert sorted(set(kind for path, kind in cards())) == ["duplicate", "known", "measured", "unfinished", "unreadable"]
+
+# A TIFF of two images, as scanners write several pages: the second foil is not measured, and the page says so.
+def rows_of(path):
+    data, at, packed = open(path, "rb").read(), 8, b""
+    while at < len(data):
+        length, = struct.unpack_from(">I", data, at)
+        kind, chunk = data[at + 4:at + 8], data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height = struct.unpack_from(">II", chunk)
+        packed += chunk if kind == b"IDAT" else b""
+        at += 12 + length
+    raw, above, rows = zlib.decompress(packed), bytes(width), []
+    paeth = lambda a, b, c: min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+    for y in range(height):
+        kind, row = raw[y * (width + 1)], bytearray(raw[y * (width + 1) + 1:(y + 1) * (width + 1)])
+        for x in range(width if kind else 0):
+            a, b, c = row[x - 1] if x else 0, above[x], above[x - 1] if x else 0
+            row[x] = row[x] + (a, b, (a + b) // 2, paeth(a, b, c))[kind - 1] & 255
+        rows.append(bytes(row))
+        above = row
+    return width, height, b"".join(rows)
+tiff, images = b"II*\0\0\0\0\0", [rows_of(work + "/%d.png" % seed) for seed in (2, 3)]
+next_at = 4
+for width, height, pixels in images:
+    place = len(tiff)
+    tiff += pixels + struct.pack("<II", 1200, 1) + b"\0" * (len(pixels) % 2)
+    directory = len(tiff)
+    tags = [(256, 4, width), (257, 4, height), (258, 3, 8), (259, 3, 1), (262, 3, 1), (273, 4, place), (277, 3, 1), (278, 4, height),
+            (279, 4, len(pixels)), (282, 5, place + len(pixels)), (283, 5, place + len(pixels)), (296, 3, 2)]
+    tiff += struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", tag, kind, 1, value) for tag, kind, value in tags) + b"\0" * 4
+    tiff = tiff[:next_at] + struct.pack("<I", directory) + tiff[next_at + 4:]
+    next_at = len(tiff) - 4
+open(folder + "7_9.tif", "wb").write(tiff)
+wait_until(lambda: call()[1] == "7_9.tif" and call()[0] in ("PASS", "FAIL", "MEASURED"))
+assert "it holds more than one image: only the first was measured" in page()
 PY
 kill "$station"
 wait "$station" 2>/dev/null || true

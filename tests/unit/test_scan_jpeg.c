@@ -217,7 +217,10 @@ static void resolution_comes_from_jfif_or_exif(void **state) {
     const char *says;
   } cases[] = {
       {1, 600, NULL, 0, 600, ""},
-      {2, 945, NULL, 0, 945 * 2.54, ""},
+      {2, 945, NULL, 0, 2400, "whole dots per cm, 2400.3 × 2400.3 dpi"},
+      {2, 472, NULL, 0, 1200, "1200 × 1200 were taken"},
+      {2, 944, NULL, 0, 2400, "whole dots per cm"}, /* cut off, not rounded */
+      {2, 400, NULL, 0, 1016, ""},                  /* 40 dots per mm */
       {0, 1, NULL, 0, 0, "no density"},
       {1, 2400, inches, sizeof inches - 1, 2400, ""},
       {1, 72, inches, sizeof inches - 1, 0, "contradict"},

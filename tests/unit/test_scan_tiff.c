@@ -90,6 +90,13 @@ static void set_tags(TIFF *tiff, const kind *k) {
   }
 }
 
+static const kind gray = {.bits = 8,
+                          .channels = 1,
+                          .photometric = PHOTOMETRIC_MINISBLACK,
+                          .mode = "wl",
+                          .compression = COMPRESSION_NONE,
+                          .rows_per_strip = HEIGHT};
+
 static char *write_tiff(const kind *k) {
   char *path = save_bytes(NULL, 0);
   TIFF *tiff = TIFFOpen(path, k->mode);
@@ -190,24 +197,21 @@ static void separate_planes_are_read(void **state) {
 
 static void resolution_is_in_inch_or_cm(void **state) {
   (void)state;
-  kind k = {.bits = 8,
-            .channels = 1,
-            .photometric = PHOTOMETRIC_MINISBLACK,
-            .mode = "wl",
-            .compression = COMPRESSION_NONE,
-            .rows_per_strip = HEIGHT,
-            .dpi = 2400,
-            .unit = RESUNIT_INCH};
+  kind k = gray;
+  k.dpi = 2400;
+  k.unit = RESUNIT_INCH;
   char *path = write_tiff(&k);
   check_scan(&k, path, FG_CHANNEL_AUTO);
   unlink(path);
   free(path);
-  k.dpi = 1889.7638f;
   k.unit = RESUNIT_CENTIMETER;
-  path = write_tiff(&k);
-  check_scan(&k, path, FG_CHANNEL_AUTO);
-  unlink(path);
-  free(path);
+  for (int whole = 0; whole <= 1; whole++) {
+    k.dpi = whole ? 1890 : 1889.7638f;
+    path = write_tiff(&k);
+    check_scan(&k, path, FG_CHANNEL_AUTO);
+    unlink(path);
+    free(path);
+  }
 }
 
 static fg_status read_all(fg_context *ctx, const char *path, const fg_scan_options *options,
@@ -225,15 +229,35 @@ static fg_status read_all(fg_context *ctx, const char *path, const fg_scan_optio
   return status;
 }
 
+/* Images beyond the first are no foils of the report: an oddity of another kind must not hide it.
+ */
+static void more_images_are_said_beside_the_orientation(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  char warning[256];
+  kind k = gray;
+  char *path = save_bytes(NULL, 0);
+  TIFF *tiff = TIFFOpen(path, k.mode);
+  for (int image = 0; image < 2; image++) {
+    set_tags(tiff, &k);
+    TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_BOTRIGHT);
+    write_rows(tiff, &k);
+    assert_int_equal(TIFFWriteDirectory(tiff), 1);
+  }
+  TIFFClose(tiff);
+  assert_ok(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, warning));
+  assert_has(warning, "only the first is read");
+  assert_has(warning, "orientation tag (3)");
+  unlink(path);
+  free(path);
+}
+
 static void loss_is_refused_unless_allowed(void **state) {
   (void)state;
   fg_context ctx = {0};
-  kind k = {.bits = 8,
-            .channels = 1,
-            .photometric = PHOTOMETRIC_MINISBLACK,
-            .mode = "wl",
-            .compression = COMPRESSION_JPEG,
-            .rows_per_strip = 8};
+  kind k = gray;
+  k.compression = COMPRESSION_JPEG;
+  k.rows_per_strip = 8;
   if (!TIFFIsCODECConfigured(COMPRESSION_JPEG)) skip();
   char *path = write_tiff(&k);
   assert_status(&ctx, read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, NULL), FG_ERR_DATA);
@@ -338,12 +362,7 @@ static void wrapped_byte_counts_are_said_and_read(void **state) {
   (void)state;
   fg_context ctx = {0};
   char warning[256];
-  kind k = {.bits = 8,
-            .channels = 1,
-            .photometric = PHOTOMETRIC_MINISBLACK,
-            .mode = "wl",
-            .compression = COMPRESSION_NONE,
-            .rows_per_strip = HEIGHT};
+  kind k = gray;
   char *path = write_tiff(&k);
   FILE *file = fopen(path, "r+b");
   uint8_t content[WIDTH * HEIGHT + 1024];
@@ -465,6 +484,7 @@ int main(void) {
       cmocka_unit_test(every_colour_type_reads_back_equal),
       cmocka_unit_test(separate_planes_are_read),
       cmocka_unit_test(resolution_is_in_inch_or_cm),
+      cmocka_unit_test(more_images_are_said_beside_the_orientation),
       cmocka_unit_test(loss_is_refused_unless_allowed),
       cmocka_unit_test(threads_change_nothing),
       cmocka_unit_test(damaged_strips_are_told_alike),
