@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/spread.h"
 #include "geometry/arc_foil.h"
 #include "geometry/bump_places.h"
 #include "geometry/defects.h"
@@ -21,8 +22,10 @@
 /* A bump is crushed when its height or radius is off the sound ones' by this factor. */
 #define CRUSHED_HEIGHT 0.6
 #define CRUSHED_RADIUS 1.6
-/* A bump fits poorly when it scatters by this factor more than the median bump. */
-#define POOR_SCATTER  3.0
+/* A bump is no circle where its scatter exceeds the median by this share and by so many standard
+ * deviations among the bumps. */
+#define POOR_SHARE    0.3
+#define POOR_SIGMAS   4.0
 #define OUTLIER_SHARE 0.02
 /* Below so many blurs of width, no plateau is left between the edges. */
 #define COARSE_WIDTHS 2.0
@@ -134,6 +137,18 @@ static double get_rms(const fg_bump *b) {
   return b->rms_um;
 }
 
+/* By how much a bump's scatter may exceed the median of all. */
+static double rms_margin(fg_context *ctx, const fg_foil *foil, double median) {
+  double *off = NULL, sd = NAN;
+  size_t n = 0;
+  if (fg_memory_allocate(ctx, foil->bump_count, sizeof *off, (void **)&off) != FG_OK) return NAN;
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (isfinite(foil->bumps[i].rms_um)) off[n++] = fabs(foil->bumps[i].rms_um - median);
+  if (n) sd = fg_robust_sd(off, n);
+  free(off);
+  return fmax(POOR_SHARE * median, POOR_SIGMAS * sd);
+}
+
 static bool is_beyond(double value, double reference, double factor) {
   return value > factor * reference || value < reference / factor;
 }
@@ -148,12 +163,12 @@ static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nomina
     height = nominal->height_mm;
     radius = design->bumps.radius_mm;
   }
-  double rms = median_of(ctx, foil, get_rms);
+  double rms = median_of(ctx, foil, get_rms), rms_max = rms + rms_margin(ctx, foil, rms);
   for (size_t i = 0; i < foil->bump_count; i++) {
     fg_bump *b = &foil->bumps[i];
     if (b->height_mm < CRUSHED_HEIGHT * height || is_beyond(b->radius_mm, radius, CRUSHED_RADIUS))
       b->flags |= FG_BUMP_CRUSHED;
-    if (b->rms_um > POOR_SCATTER * rms) b->flags |= FG_BUMP_POOR_FIT;
+    if (b->rms_um > rms_max) b->flags |= FG_BUMP_POOR_FIT;
   }
 }
 
