@@ -49,9 +49,9 @@ void fg_mixed_free(fg_mixed_model *mixed);
  * there. */
 double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool run, double *dof);
 
-/* Tests whether some coefficients are 0: scaled F and the dof of its denominator. NaN when `count`
- * is 0. */
-fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const size_t *column,
+/* Tests whether `count` linear combinations of the coefficients are all 0: scaled F and the dof of
+ * its denominator. `rows` is count × columns. NaN when `count` is 0. */
+fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const double *rows,
                         size_t count, double *f, double *dof);
 
 /* Sets *orthogonal where least squares is the estimate at every ratio, each coefficient of one
