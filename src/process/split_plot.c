@@ -219,8 +219,12 @@ static fg_status fit_mixed(fg_context *ctx, const strata *s, const fg_extended *
   fg_status status = FG_OK;
   if (!result->run_dof) return FG_OK;
   FG_TRY_EXIT(fg_regression_fit(ctx, s->model, y, NULL, &ols));
-  FG_TRY_EXIT(fg_mixed_is_orthogonal(ctx, s->model, s->plots, &ols, &orthogonal));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, s->model->columns * s->model->columns,
+                                 sizeof *result->of_plots, (void **)&result->of_plots));
+  FG_TRY_EXIT(fg_mixed_is_orthogonal(ctx, s->model, s->plots, &ols, &orthogonal, result->of_plots));
   if (orthogonal) goto exit;
+  free(result->of_plots);
+  result->of_plots = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *result->mixed, (void **)&result->mixed));
   status = fg_mixed_fit(&unused, s->model, s->plots, &ols, !result->plot_dof, result->mixed);
   if (status == FG_ERR_MEMORY) FG_TRY_EXIT(fg_fail(ctx, status, "out of memory"));
@@ -307,6 +311,7 @@ void fg_split_plot_free(fg_split_plot *result) {
   for (size_t t = 0; t < result->terms; t++)
     free(result->term[t].row.name);
   free(result->term);
+  free(result->of_plots);
   if (result->mixed) fg_mixed_free(result->mixed);
   free(result->mixed);
   *result = (fg_split_plot){0};

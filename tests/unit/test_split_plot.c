@@ -215,12 +215,59 @@ static void terms_beside_words_are_tested_by_their_mean(void **state) {
   fg_experiment_free(&e);
 }
 
+/* The constant beside D^2, and predictions, have errors of both strata: by the strata they are
+ * those of restricted likelihood. The constant had the whole plots' error alone, 28 % too wide. */
+static void predictions_have_the_errors_of_both_strata(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  char text[2048];
+  size_t used = (size_t)snprintf(text, sizeof text, "T,D,load,y\n");
+  for (int plot = 0; plot < PLOTS; plot++) {
+    double shift = 2 * random_gaussian(&seed);
+    for (int d = -1; d <= 1; d++)
+      used +=
+          (size_t)snprintf(text + used, sizeof text - used, "%d,%d,%d,%.6f\n", plot % 2 ? 1 : -1, d,
+                           plot + 1, 20 + d + 3 * d * d + shift + random_gaussian(&seed));
+  }
+  fg_experiment e = analyse(text, "T*D + D^2");
+  fg_levels plots;
+  fg_mixed_model mixed;
+  fg_prediction p;
+  double row[8] = {0}, dof;
+  const double setting[] = {0.2, -0.15};
+  assert_null(e.split_plot.mixed);
+  assert_false(e.split_plot.at_border);
+  assert_ok(&test_context, fg_table_levels(&test_context, &e.table, "load", true, &plots));
+  assert_ok(&test_context,
+            fg_mixed_fit(&test_context, &e.model, &plots, &e.regression, false, &mixed));
+  for (size_t j = 0; j < e.regression.columns; j++) {
+    memset(row, 0, sizeof row);
+    row[j] = 1;
+    double u = sqrt(fg_mixed_variance(&mixed, row, false, &dof));
+    assert_true(fabs(u / e.effect[j].standard_error - 1) < 1e-8);
+    assert_true(fabs(dof - e.effect[j].dof) < 1e-5);
+  }
+  assert_true(e.effect[0].dof > (double)e.split_plot.plot_dof);
+  assert_ok(&test_context, fg_experiment_predict(&test_context, &e, setting, &p));
+  assert_ok(&test_context, fg_model_row(&test_context, &e.model, setting, row));
+  assert_true(fabs(sqrt(fg_mixed_variance(&mixed, row, false, &dof)) / p.standard_error - 1) <
+              1e-8);
+  assert_true(fabs(dof - p.dof) < 1e-5);
+  assert_true(fabs(sqrt(fg_mixed_variance(&mixed, row, true, &dof)) / p.run_standard_error - 1) <
+              1e-8);
+  assert_true(fabs(dof - p.run_dof) < 1e-5);
+  fg_mixed_free(&mixed);
+  fg_levels_free(&plots);
+  fg_experiment_free(&e);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(missing_runs_are_analysed_as_by_r),
       cmocka_unit_test(complete_plans_agree_with_the_strata),
       cmocka_unit_test(factors_within_plots_are_estimated_without_whole_plot_dof),
       cmocka_unit_test(terms_beside_words_are_tested_by_their_mean),
+      cmocka_unit_test(predictions_have_the_errors_of_both_strata),
       cmocka_unit_test(odd_plans_are_analysed_or_say_why),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
