@@ -125,6 +125,10 @@ typedef struct fg_split_plot {
   size_t balanced;                         /* 1: equal plots */
   bool at_border;                          /* the estimate of the whole plots' variance is 0 */
   struct fg_mixed_model *mixed;            /* NULL: by strata; owned */
+  /* By strata: projects errors of the coefficients, as coordinates of an orthonormal basis of the
+   * model's columns, onto those that the whole plots make; columns × columns, owned. NULL: the
+   * strata are not orthogonal and nothing tells the scatter. */
+  double *of_plots;
   size_t taken_plots,
       taken_runs; /* dof that fg_split_plot_subtract_dof subtracted from each stratum */
 } fg_split_plot;

@@ -162,9 +162,9 @@ typedef struct fg_forming_piece {
 
 typedef struct fg_forming_bump {
   int number;
-  double die_radius_mm, die_angle_deg;
-  double curvature_radius_mm; /* 1 / kappa_f at its crown */
-  fg_bump fitted;             /* as the measurement fits it; NaN: not found */
+  double die_radius_mm, die_angle_deg; /* of a sine: of the circles fitted to it */
+  double curvature_radius_mm;          /* 1 / kappa_f at its crown */
+  fg_bump fitted;                      /* as the measurement fits it; NaN: not found */
 } fg_forming_bump;
 
 typedef struct fg_forming {

@@ -79,26 +79,23 @@ exit:
 
 /* ---- what the lot shows ---- */
 
-/* Sums of the foils' values of one bump. */
+/* Sums of the foils' values of one bump; scans of a foil are one foil. */
 typedef struct bump_sums {
   double radius, angle, height, count;
 } bump_sums;
 
-static void sum_bumps(const fg_lot *lot, size_t bumps, bump_sums *sums) {
-  for (size_t i = 0; i < lot->manifest.items; i++)
-    for (size_t f = 0; f < lot->records[i].foil_count; f++) {
-      const fg_foil *foil = &lot->records[i].foils[f];
-      for (size_t k = 0; fg_foil_is_measured(foil) && k < foil->bump_count; k++) {
-        const fg_bump *bump = &foil->bumps[k];
-        size_t at = (size_t)bump->number - 1;
-        if (bump->number < 1 || at >= bumps || bump->flags & FG_BUMP_CRUSHED ||
-            !isfinite(bump->radius_mm) || !isfinite(bump->bump_angle_deg))
-          continue;
-        sums[at].radius += bump->radius_mm;
-        sums[at].angle += bump->bump_angle_deg;
-        sums[at].height += bump->height_mm;
-        sums[at].count++;
-      }
+static void sum_bumps(const fg_formed_sets *sets, const fg_die_dimensions *die, size_t bumps,
+                      bump_sums *sums) {
+  for (size_t f = 0; f < sets->foils; f++)
+    for (size_t i = 0; i < bumps; i++) {
+      const fg_formed_foil *foil = &sets->foil[f];
+      double arc = foil->log_ratio[FG_FORMED_ARC_LENGTH][i],
+             radius = foil->log_ratio[FG_FORMED_RADIUS][i];
+      if (!isfinite(arc) || !isfinite(radius)) continue;
+      sums[i].radius += die->bump[i].radius_mm * exp(radius);
+      sums[i].angle += die->bump[i].bump_angle_deg * exp(arc - radius);
+      sums[i].height += foil->height_mm[i];
+      sums[i].count++;
     }
 }
 
@@ -118,11 +115,11 @@ static double formed_mean(const fg_formed_data *data) {
   return data->places ? data->place[0].die * exp(data->place[0].log_ratio) : NAN;
 }
 
-static void hold_values(const fg_formed_lot *lot, const fg_formed_set *set,
-                        fg_expected_check *check) {
+static void hold_values(const fg_formed_sets *sets, fg_expected_check *check) {
+  const fg_formed_set *set = &sets->set[0];
   bump_sums sums[FG_COMPENSATION_BUMPS] = {{0}};
   const fg_expected_lot *expected = &check->next.expected;
-  sum_bumps(&lot->lot, check->bumps, sums);
+  sum_bumps(sets, &check->next.die, check->bumps, sums);
   for (size_t i = 0; i < check->bumps; i++) {
     const bump_sums *sum = &sums[i];
     const fg_expected_bump *bump = &expected->bump[i];
@@ -262,7 +259,7 @@ static fg_status hold_lot(fg_context *ctx, const fg_formed_lot *lot, fg_expected
   FG_TRY_EXIT(fg_formed_sets_add(ctx, lot, &check->next.die, FG_DIE_AS_CUT, check->bumps, &sets));
   check->foils = check->next.expected.foils = sets.set[0].foils;
   FG_TRY_EXIT(fg_expected_lot_find(ctx, NULL, &check->next));
-  hold_values(lot, &sets.set[0], check);
+  hold_values(&sets, check);
   FG_TRY_EXIT(find_p_value(ctx, check));
   FG_TRY_EXIT(update_law(ctx, &sets, check));
   FG_TRY_EXIT(fg_springback_loop(ctx, check));

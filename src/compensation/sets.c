@@ -102,7 +102,7 @@ static bool fill_formed_foil(const fg_foil *foil, const fg_die_dimensions *die, 
   bool any = false;
   if (!fg_foil_is_measured(foil)) return false;
   for (size_t i = 0; i < FG_COMPENSATION_BUMPS; i++)
-    formed->log_ratio[0][i] = formed->log_ratio[1][i] = NAN;
+    formed->log_ratio[0][i] = formed->log_ratio[1][i] = formed->height_mm[i] = NAN;
   formed->overall = log_ratio_of(foil->overall.radius_mm, die->overall_radius_mm);
   formed->pitch = bumps ? log_ratio_of(foil_pitch(foil), die->pitch_deg) : NAN;
   for (size_t k = 0; k < foil->bump_count; k++) {
@@ -113,6 +113,7 @@ static bool fill_formed_foil(const fg_foil *foil, const fg_die_dimensions *die, 
     formed->log_ratio[FG_FORMED_RADIUS][i] = log_ratio_of(bump->radius_mm, of->radius_mm);
     formed->log_ratio[FG_FORMED_ARC_LENGTH][i] =
         log_ratio_of(bump->radius_mm * bump->bump_angle_deg, of->radius_mm * of->bump_angle_deg);
+    formed->height_mm[i] = bump->height_mm;
     any = any || isfinite(formed->log_ratio[FG_FORMED_RADIUS][i]);
   }
   return any || isfinite(formed->overall);
@@ -218,9 +219,11 @@ static void average(double *mean, double value, double scans) {
 static void average_scans(fg_formed_foil *mean, const fg_formed_foil *scan, double scans) {
   average(&mean->overall, scan->overall, scans);
   average(&mean->pitch, scan->pitch, scans);
-  for (size_t i = 0; i < FG_COMPENSATION_BUMPS; i++)
+  for (size_t i = 0; i < FG_COMPENSATION_BUMPS; i++) {
+    average(&mean->height_mm[i], scan->height_mm[i], scans);
     for (int k = 0; k < 2; k++)
       average(&mean->log_ratio[k][i], scan->log_ratio[k][i], scans);
+  }
 }
 
 /* Adds a foil, or to the mean of its scans where an earlier one shows it. `scan` has room for every

@@ -6,10 +6,11 @@
 #include "foilgauge/compensation.h"
 #include "lot/run/lot.h"
 
-/* One foil of a set: logarithms of formed over die; NaN: not known. */
+/* One foil of a set: logarithms of formed over die, and heights; NaN: not known. */
 typedef struct fg_formed_foil {
   double log_ratio[2]
                   [FG_COMPENSATION_BUMPS]; /* radius, arc length, by index of the target's bump */
+  double height_mm[FG_COMPENSATION_BUMPS];
   double overall, pitch;
 } fg_formed_foil;
 

@@ -140,7 +140,7 @@ static void clear_bump(fg_bump *bump) {
 }
 
 static fg_status fit_circles(fg_context *ctx, fg_forming *forming) {
-  FG_TRY(fg_forming_draw(ctx, forming, &forming->foil.strip));
+  FG_TRY(fg_forming_draw(ctx, forming, false, &forming->foil.strip));
   FG_TRY(fg_foil_measure(ctx, &forming->design, 1, &forming->foil));
   size_t found = 0;
   for (size_t i = 0; i < forming->foil.bump_count; i++) {
@@ -153,6 +153,24 @@ static fg_status fit_circles(fg_context *ctx, fg_forming *forming) {
   }
   forming->fitted = !(forming->foil.flags & FG_FOIL_NOT_MEASURED) && found == forming->bump_count;
   return FG_OK;
+}
+
+/* The bumps of a sine are no arcs of the design's radius: the die has the circles that are fitted
+ * to its shape as to the free strip's. */
+static fg_status fit_sine(fg_context *ctx, fg_forming *forming) {
+  fg_foil die = {.number = 0};
+  fg_status status = fg_forming_draw(ctx, forming, true, &die.strip);
+  if (status == FG_OK) status = fg_foil_measure(ctx, &forming->design, 1, &die);
+  for (size_t i = 0; i < forming->bump_count; i++)
+    forming->bumps[i].die_radius_mm = forming->bumps[i].die_angle_deg = NAN;
+  for (size_t i = 0; status == FG_OK && i < die.bump_count; i++) {
+    fg_forming_bump *bump = bump_at(forming, &die.bumps[i]);
+    if (!bump) continue;
+    bump->die_radius_mm = die.bumps[i].radius_mm;
+    bump->die_angle_deg = die.bumps[i].bump_angle_deg;
+  }
+  fg_foil_free(&die);
+  return status;
 }
 
 static void find_crowns(fg_forming *forming) {
@@ -243,6 +261,8 @@ fg_status fg_forming_run(fg_context *ctx, const fg_design *design,
   for (size_t i = 0; status == FG_OK && i < forming->bump_count; i++)
     clear_bump(&forming->bumps[i].fitted);
   if (status == FG_OK && forming->bump_count) status = fit_circles(ctx, forming);
+  if (status == FG_OK && forming->bump_count && forming->options.shape == FG_FORMING_SINE)
+    status = fit_sine(ctx, forming);
   if (status != FG_OK) fg_forming_free(forming);
   return status;
 }

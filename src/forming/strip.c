@@ -184,7 +184,8 @@ static void put_station(pose at, double s, double half, fg_station *station) {
                           .weight = 1};
 }
 
-fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, fg_strip *strip) {
+fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, bool of_die,
+                          fg_strip *strip) {
   size_t count = (size_t)(forming->length_mm / step_mm) + 1, piece = 0;
   double thickness = forming->design.thickness_mm;
   *strip = (fg_strip){.count = count,
@@ -199,11 +200,11 @@ fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, fg_strip *
     double s = strip->step_mm * (double)k;
     const fg_forming_piece *here = &forming->pieces[piece];
     while (piece + 1 < forming->count && s > here->start_mm + here->length_mm) {
-      at = move_along_arc(at, here->curvature, here->length_mm);
+      at = move_along_arc(at, curvature_of(here, of_die), here->length_mm);
       here = &forming->pieces[++piece];
     }
-    put_station(move_along_arc(at, here->curvature, s - here->start_mm), s, thickness / 2,
-                &strip->stations[k]);
+    put_station(move_along_arc(at, curvature_of(here, of_die), s - here->start_mm), s,
+                thickness / 2, &strip->stations[k]);
   }
   return FG_OK;
 }

@@ -9,9 +9,9 @@
  * FG_ERR_DATA: a foil kind without curvature, a die whose bumps overlap. */
 fg_status fg_forming_lay_out(fg_context *ctx, fg_forming *forming);
 
-/* Draws the midline with both edges, stations every 8 um, as input for the measurement. The strip
- * belongs to the caller. */
-fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, fg_strip *strip);
+/* Draws the midline of the free strip, or of the die, with both edges, stations every 8 um, as
+ * input for the measurement. The strip belongs to the caller. */
+fg_status fg_forming_draw(fg_context *ctx, const fg_forming *forming, bool of_die, fg_strip *strip);
 
 /* Effect of a pitch on everything after it: it turns by turn_rad and shifts by chord_mm; means over
  * the pitches from one land's middle to the next. Arc: from end to end. */

@@ -41,6 +41,11 @@ static double error_of(const fg_experiment *e, bool whole_plot, double *dof) {
   return sqrt(whole_plot ? s->plot_ms : s->run_ms);
 }
 
+/* True for an analysis of variance by strata that tells the scatter. */
+static bool has_strata(const fg_experiment *e) {
+  return e->has_split_plot && e->split_plot.of_plots && !e->weight;
+}
+
 static bool is_block_term(const fg_experiment *e, size_t term) {
   return term != FG_MODEL_CONSTANT && e->block_variable < FG_FORMULA_VARIABLES &&
          e->model.formula.term[term].power[e->block_variable] > 0;
@@ -86,6 +91,18 @@ static void take_mixed_estimates(fg_experiment *e) {
   }
 }
 
+/* `row` is 0 and stays so. */
+static void judge_by_strata(const fg_experiment *e, size_t j, double *row,
+                            fg_experiment_effect *effect) {
+  double direction[FG_MODEL_COLUMNS_MAX], variance = 0;
+  row[j] = 1;
+  effect->dof = fg_experiment_direction(e, row, direction);
+  row[j] = 0;
+  for (size_t k = 0; k < e->regression.columns; k++)
+    variance += direction[k] * direction[k];
+  effect->standard_error = sqrt(variance);
+}
+
 static void fill_effect(const fg_experiment *e, size_t j, double *row,
                         fg_experiment_effect *effect) {
   const fg_regression *reg = &e->regression;
@@ -107,6 +124,7 @@ static void fill_effect(const fg_experiment *e, size_t j, double *row,
   effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
   if (!e->has_split_plot && !e->weight) return;
   effect->standard_error = sd * sqrt(variance);
+  if (has_strata(e)) judge_by_strata(e, j, row, effect);
   if (e->weight) {
     row[j] = 1;
     effect->dof = fg_experiment_weighted_dof(e, row);
@@ -328,11 +346,40 @@ static void predict_mixed(const fg_experiment *e, const double *row, fg_predicti
   fill_intervals(e, dof, run_dof, p);
 }
 
-/* U' (row × sd of each column's stratum). */
-double fg_experiment_direction(const fg_experiment *e, const double *row, double *direction) {
+/* Parts of a variance by the strata, and its dof (Satterthwaite). */
+typedef struct strata_variance {
+  double plots, runs;
+} strata_variance;
+
+static double strata_dof(const fg_split_plot *s, strata_variance v) {
+  double sum = 0;
+  if (v.plots > 0) sum += v.plots * v.plots / (double)s->plot_dof;
+  if (v.runs > 0) sum += v.runs * v.runs / (double)s->run_dof;
+  return (v.plots + v.runs) * (v.plots + v.runs) / sum;
+}
+
+/* From U' row: the part that the whole plots make has their sd, the other one that of the runs. */
+static strata_variance scale_by_strata(const fg_experiment *e, double *direction) {
+  const fg_split_plot *s = &e->split_plot;
+  size_t columns = e->regression.columns;
+  double plots = 0, whole = 0, work[FG_MODEL_COLUMNS_MAX] = {0};
+  for (size_t k = 0; k < columns; k++) {
+    for (size_t l = 0; l < columns; l++)
+      work[k] += s->of_plots[k * columns + l] * direction[l];
+    plots += work[k] * work[k];
+    whole += direction[k] * direction[k];
+  }
+  bool none = plots <= 1e-18 * whole, all = whole - plots <= 1e-9 * whole;
+  double plot_sd = none ? 0 : sqrt(s->plot_ms), run_sd = all ? 0 : sqrt(s->run_ms);
+  for (size_t k = 0; k < columns; k++)
+    direction[k] = run_sd * (direction[k] - work[k]) + plot_sd * work[k];
+  return (strata_variance){plot_sd * plot_sd * plots, run_sd * run_sd * (whole - plots)};
+}
+
+/* U' (row × sd of each column's error). */
+static double scale_by_columns(const fg_experiment *e, const double *row, double *direction) {
   const fg_regression *reg = &e->regression;
   double min_dof = INFINITY;
-  memset(direction, 0, reg->columns * sizeof *direction);
   for (size_t j = 0; j < reg->columns; j++) {
     double dof;
     if (reg->coefficient[j].aliased || row[j] == 0) continue;
@@ -344,6 +391,32 @@ double fg_experiment_direction(const fg_experiment *e, const double *row, double
   return min_dof;
 }
 
+static strata_variance direction_by_strata(const fg_experiment *e, const double *row,
+                                           double *direction) {
+  const fg_regression *reg = &e->regression;
+  memset(direction, 0, reg->columns * sizeof *direction);
+  for (size_t j = 0; j < reg->columns; j++)
+    for (size_t k = 0; k < reg->columns && row[j] != 0 && !reg->coefficient[j].aliased; k++)
+      direction[k] += reg->inverse_root[j * reg->columns + k].value * row[j];
+  return scale_by_strata(e, direction);
+}
+
+double fg_experiment_direction(const fg_experiment *e, const double *row, double *direction) {
+  if (has_strata(e)) return strata_dof(&e->split_plot, direction_by_strata(e, row, direction));
+  memset(direction, 0, e->regression.columns * sizeof *direction);
+  return scale_by_columns(e, row, direction);
+}
+
+/* A new run of a new whole plot has the variance of the runs and that of the plots. */
+static double run_dof_by_strata(const fg_experiment *e, const double *row, double *direction) {
+  const fg_split_plot *s = &e->split_plot;
+  strata_variance v = direction_by_strata(e, row, direction);
+  double share = s->plot_variance > 0 ? (double)s->plots / (double)e->regression.rows : 0;
+  v.plots += share > 0 ? share * s->plot_ms : 0;
+  v.runs += (1 - share) * s->run_ms;
+  return strata_dof(s, v);
+}
+
 static void predict_row(const fg_experiment *e, const double *row, double *direction,
                         fg_prediction *p) {
   const fg_regression *reg = &e->regression;
@@ -353,12 +426,14 @@ static void predict_row(const fg_experiment *e, const double *row, double *direc
     variance += direction[k] * direction[k];
     if (!reg->coefficient[k].aliased) p->mean += row[k] * reg->coefficient[k].estimate;
   }
-  if (e->weight) min_dof = fg_experiment_weighted_dof(e, row);
+  double run_dof = min_dof;
+  if (e->weight) run_dof = min_dof = fg_experiment_weighted_dof(e, row);
+  if (has_strata(e)) run_dof = run_dof_by_strata(e, row, direction);
   double run_variance = reg->residual_sd * reg->residual_sd;
   if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;
   p->standard_error = sqrt(variance);
   p->run_standard_error = sqrt(variance + run_variance);
-  fill_intervals(e, min_dof, min_dof, p);
+  fill_intervals(e, min_dof, run_dof, p);
 }
 
 fg_status fg_experiment_row(fg_context *ctx, const fg_experiment *e, const double *setting,

@@ -54,8 +54,9 @@ fg_status fg_experiment_row(fg_context *ctx, const fg_experiment *experiment, co
                             double *row);
 
 /* Writes the random error of a row's prediction as a sum over independent standard normal errors,
- * one per column: |direction| is the standard error. Not for restricted likelihood. Returns the
- * smallest dof. */
+ * one per column: |direction| is the standard error. Not for restricted likelihood. Returns its
+ * dof.
+ */
 double fg_experiment_direction(const fg_experiment *experiment, const double *row,
                                double *direction);
 

@@ -5,7 +5,11 @@
  * A factor is a suspect when none of its coefficients is significant at the level of the intervals.
  * Suspects leave one by one, the largest p first, as long as all that left can be zero together:
  * Wald's F of their coefficients in the model as given, so that all are tested against the same
- * error. */
+ * error.
+ *
+ * A factor whose settings follow those of the factors that stay does not leave: the runs cannot
+ * tell which of them makes the difference, so no setting of it is known to be as good as another.
+ */
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +18,10 @@
 #include "core/memory.h"
 #include "foilgauge/distribution.h"
 #include "process/experiment_parts.h"
+
+/* Of the variation of a factor's settings: variances of effects are ten times those of factors that
+ * change independently. */
+static const double FOLLOWED = 0.9;
 
 typedef struct suspects {
   bool suspect[FG_FORMULA_VARIABLES], left[FG_FORMULA_VARIABLES];
@@ -131,6 +139,70 @@ static fg_status add_idle(fg_context *ctx, fg_experiment *e, size_t variable) {
   return joint_p(ctx, e, alone, &idle->p_value);
 }
 
+/* Writes the formula of the other factors and blocks that stay, each by itself. */
+static fg_status write_staying(fg_context *ctx, const fg_experiment *e, const suspects *s,
+                               const char *column, size_t *terms, char **text) {
+  fg_term term[FG_FORMULA_VARIABLES] = {{{0}}};
+  fg_formula formula = e->model.formula;
+  formula.response = NULL;
+  formula.term = term;
+  formula.terms = 0;
+  formula.constant = true;
+  for (size_t v = 0; v < formula.variables; v++)
+    if (!s->left[v] && strcmp(formula.variable[v].column, column) != 0)
+      term[formula.terms++].power[v] = 1;
+  *terms = formula.terms;
+  return fg_formula_format(ctx, &formula, text);
+}
+
+/* Finds the share of the variation of a factor's settings that follows those that stay; NaN: the
+ * settings are words, or nothing stays. */
+static fg_status find_share_followed(fg_context *ctx, const fg_experiment *e, const suspects *s,
+                                     size_t variable, double *share) {
+  const char *column = e->model.formula.variable[variable].column;
+  char *formula = NULL;
+  fg_context words = {0};
+  fg_model model = {0};
+  fg_regression fit = {0};
+  size_t terms = 0;
+  *share = NAN;
+  if (e->model.levels[variable].count) return FG_OK;
+  fg_status status = write_staying(ctx, e, s, column, &terms, &formula);
+  if (status == FG_OK && terms) {
+    status = fg_regression_analyse(&words, &e->table, formula, column, NULL, &model, &fit);
+    if (status == FG_OK) *share = fit.r2;
+    /* Settings that cannot be fitted follow nothing. */
+    status = status == FG_ERR_MEMORY ? fg_fail(ctx, status, "out of memory") : FG_OK;
+    fg_regression_free(&fit);
+    fg_model_free(&model);
+  }
+  free(formula);
+  return status;
+}
+
+/* Takes back the factors whose settings follow those that stay. One that is back makes others
+ * follow it. */
+static fg_status take_back_followers(fg_context *ctx, fg_experiment *e, suspects *s) {
+  for (bool back = true; back;) {
+    back = false;
+    for (size_t v = 0; v < e->model.formula.variables; v++) {
+      double share;
+      if (!s->left[v]) continue;
+      FG_TRY(find_share_followed(ctx, e, s, v, &share));
+      if (!(share > FOLLOWED)) continue;
+      s->left[v] = false;
+      back = true;
+      FG_TRY(fg_experiment_note(
+          ctx, e,
+          "the settings of %s follow those of the other factors in these runs (R² = %.4g): which "
+          "of them makes the difference cannot be told, and the best setting sets them together; "
+          "runs that change %s alone would tell",
+          e->model.formula.variable[v].column, share, e->model.formula.variable[v].column));
+    }
+  }
+  return FG_OK;
+}
+
 static fg_status find_idle(fg_context *ctx, fg_experiment *e, suspects *s) {
   size_t next, asked = 0;
   for (size_t v = 0; v < e->model.formula.variables; v++) {
@@ -141,6 +213,7 @@ static fg_status find_idle(fg_context *ctx, fg_experiment *e, suspects *s) {
     FG_TRY(next_to_leave(ctx, e, s, &next));
     if (next < FG_FORMULA_VARIABLES) s->left[next] = true;
   } while (next < FG_FORMULA_VARIABLES);
+  FG_TRY(take_back_followers(ctx, e, s));
   for (size_t v = 0; v < e->model.formula.variables; v++)
     if (s->left[v]) FG_TRY(add_idle(ctx, e, v));
   e->all_idle = e->idles && e->idles == asked;

@@ -216,7 +216,8 @@ static double find_coverage_factor(const double *share, double rank, double dof,
   return high;
 }
 
-/* All settings have the same dof, except by restricted likelihood. */
+/* All settings have the same dof, except with whole plots: by restricted likelihood that of the
+ * middle counts, by strata the smallest. */
 static fg_status find_middle_coverage(fg_context *ctx, const fg_experiment *e, fg_simultaneous *s) {
   fg_prediction middle;
   double setting[FG_FORMULA_VARIABLES] = {0}, rank = (double)s->rank;
@@ -225,6 +226,12 @@ static fg_status find_middle_coverage(fg_context *ctx, const fg_experiment *e, f
   FG_TRY(fg_experiment_predict(ctx, e, setting, &middle));
   s->dof = middle.dof;
   s->run_dof = middle.run_dof;
+  if (e->has_split_plot && e->split_plot.of_plots) {
+    const fg_split_plot *strata = &e->split_plot;
+    double min_dof = fmin((double)strata->plot_dof, (double)strata->run_dof);
+    s->dof = fmin(s->dof, min_dof);
+    s->run_dof = fmin(s->run_dof, min_dof);
+  }
   if (!(s->dof > 0)) return FG_OK;
   s->factor = find_coverage_factor(s->share, rank, s->dof, e->confidence);
   s->run_factor = find_coverage_factor(s->run_share, rank + 1, s->run_dof, e->confidence);

@@ -10,6 +10,7 @@
 #include "foilgauge/distribution.h"
 #include "foilgauge/doe.h"
 #include "stats/mixed_model.h"
+#include "stats/regression_parts.h"
 
 /* A term is of the whole plot when all its columns are constant within every plot. */
 static bool is_constant_within(const fg_model *model, const fg_levels *plots, size_t term,
@@ -163,25 +164,38 @@ static fg_status read_strata(fg_context *ctx, const strata *s, const fg_regressi
   return FG_OK;
 }
 
-/* The term beside all others. */
+/* Fills `rows` with the means of the term's coefficients over the levels of the words that it
+ * interacts with, and returns their number. */
+static size_t fill_means(const fg_model *model, const fg_regression *ols, const char *term,
+                         double *rows) {
+  size_t count = 0, columns = model->columns;
+  for (size_t j = 0; j < columns; j++) {
+    if (model->column[j].term == FG_MODEL_CONSTANT || ols->coefficient[j].aliased ||
+        strcmp(model->term_name[model->column[j].term], term) != 0)
+      continue;
+    for (size_t k = 0; k < columns; k++)
+      rows[count * columns + k] =
+          ols->coefficient[k].aliased ? 0 : fg_model_share_in_mean(model, j, k);
+    count++;
+  }
+  return count;
+}
+
+/* The term beside all others, as fg_regression's partial row. */
 static fg_status test_term(fg_context *ctx, const fg_model *model, const fg_mixed_model *mixed,
-                           const fg_regression *ols, size_t *column, fg_split_plot_term *term) {
-  size_t count = 0;
-  for (size_t j = 0; j < model->columns; j++)
-    if (model->column[j].term != FG_MODEL_CONSTANT && !ols->coefficient[j].aliased &&
-        !strcmp(model->term_name[model->column[j].term], term->row.name))
-      column[count++] = j;
+                           const fg_regression *ols, double *rows, fg_split_plot_term *term) {
+  size_t count = fill_means(model, ols, term->row.name, rows);
   term->row.dof = count;
   term->row.sum_of_squares = term->row.mean_square = NAN;
-  FG_TRY(fg_mixed_test(ctx, mixed, column, count, &term->row.f, &term->error_dof));
+  FG_TRY(fg_mixed_test(ctx, mixed, rows, count, &term->row.f, &term->error_dof));
   term->row.p_value = fg_distribution_f_upper(term->row.f, (double)count, term->error_dof);
   return FG_OK;
 }
 
 static fg_status test_terms(fg_context *ctx, const fg_model *model, const fg_regression *ols,
                             fg_split_plot *result) {
-  size_t *column = NULL;
-  FG_TRY(fg_memory_allocate(ctx, model->columns, sizeof *column, (void **)&column));
+  double *rows = NULL;
+  FG_TRY(fg_memory_allocate(ctx, model->columns * model->columns, sizeof *rows, (void **)&rows));
   fg_status status = FG_OK;
   for (size_t t = 0; t < result->terms && status == FG_OK; t++) {
     fg_split_plot_term *term = &result->term[t];
@@ -189,9 +203,9 @@ static fg_status test_terms(fg_context *ctx, const fg_model *model, const fg_reg
       term->row.f = term->row.p_value = term->row.sum_of_squares = term->row.mean_square =
           term->error_dof = NAN;
     else
-      status = test_term(ctx, model, result->mixed, ols, column, term);
+      status = test_term(ctx, model, result->mixed, ols, rows, term);
   }
-  free(column);
+  free(rows);
   return status;
 }
 
@@ -205,8 +219,12 @@ static fg_status fit_mixed(fg_context *ctx, const strata *s, const fg_extended *
   fg_status status = FG_OK;
   if (!result->run_dof) return FG_OK;
   FG_TRY_EXIT(fg_regression_fit(ctx, s->model, y, NULL, &ols));
-  FG_TRY_EXIT(fg_mixed_is_orthogonal(ctx, s->model, s->plots, &ols, &orthogonal));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, s->model->columns * s->model->columns,
+                                 sizeof *result->of_plots, (void **)&result->of_plots));
+  FG_TRY_EXIT(fg_mixed_is_orthogonal(ctx, s->model, s->plots, &ols, &orthogonal, result->of_plots));
   if (orthogonal) goto exit;
+  free(result->of_plots);
+  result->of_plots = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *result->mixed, (void **)&result->mixed));
   status = fg_mixed_fit(&unused, s->model, s->plots, &ols, !result->plot_dof, result->mixed);
   if (status == FG_ERR_MEMORY) FG_TRY_EXIT(fg_fail(ctx, status, "out of memory"));
@@ -293,6 +311,7 @@ void fg_split_plot_free(fg_split_plot *result) {
   for (size_t t = 0; t < result->terms; t++)
     free(result->term[t].row.name);
   free(result->term);
+  free(result->of_plots);
   if (result->mixed) fg_mixed_free(result->mixed);
   free(result->mixed);
   *result = (fg_split_plot){0};

@@ -383,7 +383,8 @@ void fg_mixed_free(fg_mixed_model *mixed) {
 }
 
 fg_status fg_mixed_is_orthogonal(fg_context *ctx, const fg_model *model, const fg_levels *groups,
-                                 const fg_regression *least_squares, bool *orthogonal) {
+                                 const fg_regression *least_squares, bool *orthogonal,
+                                 double *of_groups) {
   setting s = {0};
   fg_status status = FG_OK;
   *orthogonal = true;
@@ -402,6 +403,11 @@ fg_status fg_mixed_is_orthogonal(fg_context *ctx, const fg_model *model, const f
     }
     *orthogonal = length - within <= 1e-9 * s.largest * s.largest;
   }
+  for (size_t g = 0; g < s.groups && *orthogonal; g++)
+    for (size_t k = 0; k < s.rank; k++)
+      for (size_t l = 0; l < s.rank; l++)
+        of_groups[s.column[k] * model->columns + s.column[l]] +=
+            s.sum[g * s.rank + k] * s.sum[g * s.rank + l] / s.largest;
 exit:
   setting_free(&s);
   return status;

@@ -49,16 +49,17 @@ void fg_mixed_free(fg_mixed_model *mixed);
  * there. */
 double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool run, double *dof);
 
-/* Tests whether some coefficients are 0: scaled F and the dof of its denominator. NaN when `count`
- * is 0. */
-fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const size_t *column,
+/* Tests whether `count` linear combinations of the coefficients are all 0: scaled F and the dof of
+ * its denominator. `rows` is count × columns. NaN when `count` is 0. */
+fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const double *rows,
                         size_t count, double *f, double *dof);
 
-/* Sets *orthogonal where least squares is the estimate at every ratio, each coefficient of one
- * stratum: groups of one size, and Z Z' X within the space of X. Then the analysis of variance by
- * strata is exact. */
+/* Sets *orthogonal where least squares is the estimate at every ratio: groups of one size, and Z Z'
+ * X within the space of X. Then the analysis of variance by strata is exact, and `of_groups`,
+ * columns × columns, becomes the projector Q' Z Z' Q / n onto the errors that the groups make. */
 fg_status fg_mixed_is_orthogonal(fg_context *ctx, const fg_model *model, const fg_levels *groups,
-                                 const fg_regression *least_squares, bool *orthogonal);
+                                 const fg_regression *least_squares, bool *orthogonal,
+                                 double *of_groups);
 
 /* Trace of a b. */
 double fg_mixed_trace_product(const gsl_matrix *a, const gsl_matrix *b);

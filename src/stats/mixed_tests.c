@@ -29,14 +29,18 @@ double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool ru
   return quadratic(mixed->adjusted, row, mixed->columns) + extra;
 }
 
-/* Elements of `columns` chosen. */
-static gsl_matrix *part_of(const double *matrix, size_t columns, const size_t *chosen,
-                           size_t count) {
-  gsl_matrix *part = gsl_matrix_alloc(count, count);
-  for (size_t i = 0; part && i < count; i++)
-    for (size_t j = 0; j < count; j++)
-      gsl_matrix_set(part, i, j, matrix[chosen[i] * columns + chosen[j]]);
-  return part;
+/* rows · matrix · rows', `rows` count × columns. */
+static gsl_matrix *carry_to_rows(const double *matrix, size_t columns, const double *rows,
+                                 size_t count) {
+  gsl_matrix_const_view to = gsl_matrix_const_view_array(rows, count, columns);
+  gsl_matrix_const_view from = gsl_matrix_const_view_array(matrix, columns, columns);
+  gsl_matrix *half = gsl_matrix_alloc(count, columns), *whole = gsl_matrix_alloc(count, count);
+  if (half && whole) {
+    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &to.matrix, &from.matrix, 0, half);
+    gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, half, &to.matrix, 0, whole);
+  }
+  gsl_matrix_free(half);
+  return whole;
 }
 
 /* Scale of F and its degrees of freedom (Kenward and Roger 1997, section 3) of q coefficients. */
@@ -64,7 +68,7 @@ static void sum_traces(const fg_mixed_model *mixed, const gsl_matrix *const prod
     }
 }
 
-static fg_status test_kept(fg_context *ctx, const fg_mixed_model *mixed, const size_t *kept,
+static fg_status test_rows(fg_context *ctx, const fg_mixed_model *mixed, const double *rows,
                            size_t count, double *f, double *dof) {
   enum { COVARIANCE, ADJUSTED, SLOPE_0, SLOPE_1, PRODUCT_0, PRODUCT_1, PARTS };
   const double *const source[] = {mixed->covariance, mixed->adjusted, mixed->slope[0],
@@ -74,7 +78,7 @@ static fg_status test_kept(fg_context *ctx, const fg_mixed_model *mixed, const s
   double a1, a2, scale, square = 0;
   fg_status status = FG_OK;
   for (int i = 0; i < PARTS; i++)
-    if (!(part[i] = part_of(source[i], mixed->columns, kept, count)) || !b || !solved)
+    if (!(part[i] = carry_to_rows(source[i], mixed->columns, rows, count)) || !b || !solved)
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_MEMORY, "out of memory"));
   *f = *dof = NAN;
   if (gsl_linalg_cholesky_decomp1(part[COVARIANCE]) != 0 ||
@@ -86,8 +90,9 @@ static fg_status test_kept(fg_context *ctx, const fg_mixed_model *mixed, const s
                    part[PRODUCT_0 + i]);
   const gsl_matrix *const product[2] = {part[PRODUCT_0], part[PRODUCT_1]};
   sum_traces(mixed, product, &a1, &a2);
-  for (size_t i = 0; i < count; i++)
-    gsl_vector_set(b, i, mixed->estimate[kept[i]]);
+  gsl_vector_const_view estimate = gsl_vector_const_view_array(mixed->estimate, mixed->columns);
+  gsl_matrix_const_view to = gsl_matrix_const_view_array(rows, count, mixed->columns);
+  gsl_blas_dgemv(CblasNoTrans, 1, &to.matrix, &estimate.vector, 0, b);
   gsl_linalg_cholesky_solve(part[ADJUSTED], b, solved);
   gsl_blas_ddot(b, solved, &square);
   match_moments((double)count, a1, a2, &scale, dof);
@@ -100,8 +105,8 @@ exit:
   return status;
 }
 
-fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const size_t *column,
+fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const double *rows,
                         size_t count, double *f, double *dof) {
   *f = *dof = NAN;
-  return count ? test_kept(ctx, mixed, column, count, f, dof) : FG_OK;
+  return count ? test_rows(ctx, mixed, rows, count, f, dof) : FG_OK;
 }

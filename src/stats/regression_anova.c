@@ -60,36 +60,32 @@ static bool has_part(const fg_model_column *column, const fg_part *part) {
   return false;
 }
 
-/* Share of column `other` in the mean of `column` over the levels of the words that `other` has
- * besides: a product of 1 / levels; 0: `other` is no such product. The first levels, which have no
- * column, count in the mean with 0. */
-static double share_in_mean(const fg_model *model, const fg_model_column *column,
-                            const fg_model_column *other) {
+double fg_model_share_in_mean(const fg_model *model, size_t column, size_t other) {
+  const fg_model_column *of = &model->column[column], *from = &model->column[other];
   double share = 1;
   size_t common = 0;
-  for (size_t k = 0; k < other->parts; k++) {
-    const fg_part *part = &other->part[k];
-    if (has_part(column, part))
+  for (size_t k = 0; k < from->parts; k++) {
+    const fg_part *part = &from->part[k];
+    if (has_part(of, part))
       common++;
     else if (part->level == FG_PART_NUMBER)
       return 0;
     else
       share /= (double)model->levels[part->variable].count;
   }
-  return common == column->parts ? share : 0;
+  return common == of->parts ? share : 0;
 }
 
 /* Adds up the coefficients, and rows of U of their covariance, to the mean over levels. */
 static void average_over_levels(const fg_fit *fit, const fg_regression *reg, size_t column,
                                 fg_extended *estimate, fg_extended *row) {
   const fg_orthogonal *s = &fit->solution;
-  const fg_model_column *columns = fit->model->column;
   *estimate = (fg_extended){0, 0};
   for (size_t i = 0; i < s->columns; i++)
     row[i] = (fg_extended){0, 0};
   for (size_t k = 0; k < s->rank; k++) {
     size_t other = s->kept[k];
-    double share = share_in_mean(fit->model, &columns[column], &columns[other]);
+    double share = fg_model_share_in_mean(fit->model, column, other);
     if (share == 0) continue;
     fg_extended weight = fg_extended_of(share);
     *estimate =

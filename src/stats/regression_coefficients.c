@@ -69,6 +69,7 @@ fg_status fg_regression_coefficients(fg_context *ctx, const fg_fit *fit, fg_regr
 /* x_j = sum a_i x_i with a = R^-1 (Q' x_j); coefficients of rounding size are left out. */
 static fg_status fill_alias(fg_context *ctx, const fg_orthogonal *s, size_t j, fg_alias *alias) {
   size_t n = s->columns;
+  double whole = sqrt(spread(s, false, j).value);
   alias->column = j;
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *alias->with, (void **)&alias->with));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *alias->factor, (void **)&alias->factor));
@@ -81,7 +82,8 @@ static fg_status fill_alias(fg_context *ctx, const fg_orthogonal *s, size_t j, f
       factor = fg_extended_add(factor, step);
       size += fabs(step.value);
     }
-    if (fabs(factor.value) <= 1e-9 * size) continue;
+    double part = fabs(factor.value) * sqrt(spread(s, false, i).value);
+    if (fabs(factor.value) <= 1e-9 * size || part <= 1e-20 * whole) continue;
     alias->with[alias->count] = i;
     alias->factor[alias->count++] = factor.value;
   }
@@ -91,6 +93,10 @@ static fg_status fill_alias(fg_context *ctx, const fg_orthogonal *s, size_t j, f
 static fg_status note_alias(fg_context *ctx, fg_regression *reg, const fg_alias *alias) {
   char *text = NULL;
   fg_status status = FG_OK;
+  if (!alias->count)
+    return fg_regression_note(ctx, reg,
+                              "%s is 0 in every run: nothing is known of it, and it counts as 0",
+                              reg->coefficient[alias->column].name);
   for (size_t i = 0; i < alias->count && status == FG_OK; i++)
     status = fg_text_append(ctx, &text, "%s%.6g × %s", i ? " + " : "", alias->factor[i],
                             reg->coefficient[alias->with[i]].name);
@@ -98,8 +104,8 @@ static fg_status note_alias(fg_context *ctx, fg_regression *reg, const fg_alias 
     status = fg_regression_note(
         ctx, reg,
         "%s cannot be told apart from others (it is %s): it is left out, and the "
-        "coefficients of those stand for both",
-        reg->coefficient[alias->column].name, text ? text : "zero everywhere");
+        "coefficients of those stand for both: predictions hold where that is so",
+        reg->coefficient[alias->column].name, text);
   free(text);
   return status;
 }

@@ -14,6 +14,11 @@ typedef struct fg_fit {
   fg_orthogonal solution;
 } fg_fit;
 
+/* Share of column `other` in the mean of `column` over the levels of the words that `other` has
+ * besides: a product of 1 / levels; 0: `other` is no such product. The first levels, which have no
+ * column, count in the mean with 0. */
+double fg_model_share_in_mean(const fg_model *model, size_t column, size_t other);
+
 fg_status fg_regression_note(fg_context *ctx, fg_regression *regression, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

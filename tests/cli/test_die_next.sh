@@ -153,6 +153,21 @@ near "mandrel" "$(value mandrel.json 'r["die"]["overall_radius_mm"]')" "$(python
 [ "$(value mandrel.json 'r["die"]["bumps"]')" = "[]" ] || fail "a mandrel with bumps"
 valid next_die.schema.json next.json good.json mandrel.json
 
+# One foil of three is scanned eight times: the lot's means are of three foils, as in the lot of one scan each.
+python3 - "$root" "$program" "$renderer" <<'P' || fail "lots of repeated scans"
+import random, sys
+sys.path.insert(0, sys.argv[1] + "/tests/support")
+from formed_lots import DESIGN, Template
+template = Template(sys.argv[2], "template", {**DESIGN, "bump_count": 9, "tolerances": {"radius_error_pct": {"min": -3, "max": 3}}},
+                    renderer=sys.argv[3])
+foils = [template.foil(20.73 + 0.02 * k, 40 / 3, [(3.3 * (1 + 0.01 * k), 62 + k)] * 9) for k in range(3)]
+for name, of in (("once", [0, 1, 2]), ("often", [0, 1] + [2] * 8)):
+    template.write(name, [foils[k] for k in of], {"foil": [f"f{k}" for k in of]}, options=("--expected", "next.json"))
+P
+for of in 'bumps"][4]["radius_mm' 'bumps"][4]["bump_angle_deg' 'bumps"][4]["height_mm' 'overall_radius_mm'; do
+  near "repeated scans: $of" "$(value often/expected.json "r[\"$of\"][\"measured\"]")" "$(value once/expected.json "r[\"$of\"][\"measured\"]")" 1e-9
+done
+
 # Refused: no lot, no lot's folder, another strip, datum or kind, limits of the shop.
 expect 64 'name one with --lot' "$program" die --target target.json
 expect 64 'put --lot first' "$program" die --target target.json --die next.json --lot one

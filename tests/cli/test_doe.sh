@@ -82,6 +82,10 @@ table 'a,b,y\n1,2,3\n2,4,5\n1,2,3.5\n2,4,5.5\n'
 expect 0 '' "$program" doe "$folder/t.csv" --response y --model a+b -o "$out/a.json"
 grep -q 'b cannot be told apart' "$out/a.json" || fail "an alias is not said"
 only a.json
+table 'a,day,y\n-1,mon,4.1\n-1,mon,3.9\n1,tue,6.1\n1,tue,5.8\n'
+expect 0 '' "$program" doe "$folder/t.csv" --response y --model a --block day -o "$out/a.json"
+grep -q 'No effect can be judged: none can be told apart from the blocks' "$out/a.json" || fail "a factor that the blocks hide"
+only a.json
 
 # Quotes, a byte order mark and CRLF are no obstacle.
 table '\xef\xbb\xbf"a","the ""y"""\r\n1,"3"\r\n2,4\r\n1,3.5\r\n2,5\r\n'

@@ -184,4 +184,36 @@ grep -q 'T matters (at die A): from 500 to 600 it raises the response by [78]\.'
 analyse alike dies.csv y 'T + die'
 grep -q 'T matters: from 500 to 600' alike.txt || fail "an effect of all dies is said to be of one"
 
+# The duration followed the temperature from run to run, and it alone makes the response: 10 - 1.2 D. That the temperature
+# seems to do it by chance does not set the duration free.
+cat >followed.csv <<'END'
+T,D,y
+500,3.02,6.512
+500,2.96,6.296
+521.429,3.4,5.952
+521.429,3.23,5.901
+542.857,4,5.410
+542.857,3.95,5.307
+564.286,4.26,4.971
+564.286,4.35,4.883
+585.714,4.74,4.059
+585.714,4.67,4.592
+607.143,5.22,4.250
+607.143,5.12,3.446
+628.571,5.55,2.908
+628.571,5.51,3.012
+650,6.04,2.962
+650,5.99,2.844
+END
+analyse followed followed.csv y 'T + D'
+grep -q 'any (cheapest' followed.txt && fail "a setting is called free that follows another"
+grep -q 'the settings of D follow those of the other factors in these runs (R² = 0.9942)' followed.html || fail "not told"
+[ "$(value followed.json '(lambda o: o["interval"][0] < 10 - 1.2 * o["real"][1] < o["interval"][1])(r["surface"]["optimum"])')" = True ] ||
+  fail "the interval at the best setting: $(value followed.json 'r["surface"]["optimum"]')"
+
+# A combination that no run has.
+printf 'die,oven,y\nA,x,1\nA,x,1.2\nA,z,3\nA,z,3.1\nB,x,2\nB,x,2.2\n' >cell.csv
+expect 0 '' "$program" doe cell.csv --response y --model 'die*oven' -o cell.json
+[ "$(value cell.json 'any("dieB:ovenz is 0 in every run: nothing is known of it" in n for n in r["notes"])')" = True ] || fail "an empty cell"
+
 exit $failed

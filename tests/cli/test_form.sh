@@ -24,6 +24,12 @@ expect 0 "" "$program" forming design.json --material material.json --schedule h
 near "a hold in two parts" "$(value again.json "r['bumps'][4]['radius_mm']")" \
   "$(value form.json "r['bumps'][4]['radius_mm']")" 1e-9
 expect 0 "" "$program" forming --shape sine -o sine.json
+# A strip without strength takes the die's shape: its circles are the die's, which for a sine are not the design's arcs.
+echo '{"schema":"foilgauge/material/1","yield_mpa":1,"hardening_mpa":0}' >soft.json
+expect 0 "" "$program" forming --shape sine --material soft.json -o soft_sine.json
+near "a soft strip in a sine" "$(value soft_sine.json "r['bumps'][4]['radius_mm'] / r['bumps'][4]['die_radius_mm']")" 1 0.001
+near "angle of a soft strip" "$(value soft_sine.json "r['bumps'][4]['bump_angle_deg'] / r['bumps'][4]['die_bump_angle_deg']")" 1 0.001
+near "a sine's circle" "$(value soft_sine.json "r['bumps'][4]['die_radius_mm']")" 2.64 0.02
 expect 0 "" "$program" forming "$root/samples/render/../top_foil_design.json" -o arc.json
 [ "$(value arc.json "r['overall']['radius_mm'] == r['plain_strip']['radius_mm'] and r['bumps']")" = "[]" ] || fail "a plain strip"
 

@@ -89,6 +89,20 @@ static void aliases_are_named(void **state) {
   drop(&e);
 }
 
+/* c = a + b, in tenths that binary numbers round: the constant has no share but rounding's. */
+static void an_alias_has_no_share_of_rounding_size(void **state) {
+  experiment e;
+  (void)state;
+  fit(&e,
+      "a,b,c,y\n0.1,1.1,1.2,1\n0.2,1.3,1.5,2\n0.3,1.7,2,4\n0.4,1.1,1.5,3\n0.6,1.9,2.5,7\n"
+      "0.7,1.4,2.1,5\n",
+      "y ~ a + b + c", NULL);
+  assert_int_equal(e.reg.aliases, 1);
+  assert_int_equal(e.reg.alias[0].count, 2);
+  assert_has(e.reg.note[0], "(it is 1 × a + 1 × b)");
+  drop(&e);
+}
+
 /* A half fraction 2^(3-1) with C = AB: the interaction is the factor. */
 static void a_fraction_has_its_alias(void **state) {
   experiment e;
@@ -360,6 +374,7 @@ int main(void) {
       cmocka_unit_test(equal_responses),
       cmocka_unit_test(exact_fit),
       cmocka_unit_test(aliases_are_named),
+      cmocka_unit_test(an_alias_has_no_share_of_rounding_size),
       cmocka_unit_test(a_fraction_has_its_alias),
       cmocka_unit_test(weights_repeat_runs),
       cmocka_unit_test(leave_one_out_residuals_agree_with_refits),

@@ -182,11 +182,92 @@ static void odd_plans_are_analysed_or_say_why(void **state) {
   free(text);
 }
 
+/* Beside T:die the coefficient of T is that of the first die, which T does nothing to (F 0.157,
+ * p = 0.70). Expected: F, dof and p of restricted likelihood with contrasts that add up to zero. */
+static void terms_beside_words_are_tested_by_their_mean(void **state) {
+  (void)state;
+  static const char text[] = "T,die,load,y\n"
+                             "-1,b,L1,20.088\n-1,a,L1,20.217\n-1,c,L1,19.922\n1,a,L2,19.989\n"
+                             "1,b,L2,21.525\n1,c,L2,22.947\n1,a,L2,20.733\n1,b,L2,22.173\n"
+                             "1,c,L2,22.985\n-1,a,L3,19.971\n-1,b,L3,18.485\n-1,a,L3,19.114\n"
+                             "-1,b,L3,19.176\n1,a,L4,18.367\n1,b,L4,21.488\n1,c,L4,22.730\n"
+                             "1,a,L4,19.797\n1,b,L4,22.080\n1,c,L4,23.407\n-1,a,L5,21.190\n"
+                             "-1,c,L5,17.374\n-1,a,L5,20.394\n-1,b,L5,19.661\n-1,c,L5,17.437\n"
+                             "1,a,L6,20.381\n1,b,L6,22.798\n1,a,L6,20.770\n1,b,L6,21.049\n"
+                             "1,c,L6,23.041\n-1,a,L7,18.859\n-1,a,L7,19.561\n-1,b,L7,17.543\n"
+                             "-1,c,L7,16.525\n1,b,L8,22.144\n1,a,L8,21.350\n1,b,L8,22.170\n"
+                             "1,c,L8,23.162\n";
+  static const struct {
+    const char *term;
+    double f, dof, p_value;
+  } expected[] = {{"T", 33.8151692, 6.01278149, 0.00112751416},
+                  {"die", 1.01125266, 25.6191908, 0.377826637},
+                  {"T:die", 42.8622596, 25.6191908, 6.70183e-09}};
+  fg_experiment e = analyse(text, "T*die");
+  assert_non_null(e.split_plot.mixed);
+  for (size_t i = 0; i < 3; i++) {
+    const fg_split_plot_term *term = &e.split_plot.term[i];
+    assert_string_equal(term->row.name, expected[i].term);
+    assert_true(fabs(term->row.f / expected[i].f - 1) < 1e-6);
+    assert_true(fabs(term->error_dof / expected[i].dof - 1) < 1e-6);
+    assert_true(fabs(term->row.p_value / expected[i].p_value - 1) < 1e-5);
+  }
+  fg_experiment_free(&e);
+}
+
+/* The constant beside D^2, and predictions, have errors of both strata: by the strata they are
+ * those of restricted likelihood. The constant had the whole plots' error alone, 28 % too wide. */
+static void predictions_have_the_errors_of_both_strata(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  char text[2048];
+  size_t used = (size_t)snprintf(text, sizeof text, "T,D,load,y\n");
+  for (int plot = 0; plot < PLOTS; plot++) {
+    double shift = 2 * random_gaussian(&seed);
+    for (int d = -1; d <= 1; d++)
+      used +=
+          (size_t)snprintf(text + used, sizeof text - used, "%d,%d,%d,%.6f\n", plot % 2 ? 1 : -1, d,
+                           plot + 1, 20 + d + 3 * d * d + shift + random_gaussian(&seed));
+  }
+  fg_experiment e = analyse(text, "T*D + D^2");
+  fg_levels plots;
+  fg_mixed_model mixed;
+  fg_prediction p;
+  double row[8] = {0}, dof;
+  const double setting[] = {0.2, -0.15};
+  assert_null(e.split_plot.mixed);
+  assert_false(e.split_plot.at_border);
+  assert_ok(&test_context, fg_table_levels(&test_context, &e.table, "load", true, &plots));
+  assert_ok(&test_context,
+            fg_mixed_fit(&test_context, &e.model, &plots, &e.regression, false, &mixed));
+  for (size_t j = 0; j < e.regression.columns; j++) {
+    memset(row, 0, sizeof row);
+    row[j] = 1;
+    double u = sqrt(fg_mixed_variance(&mixed, row, false, &dof));
+    assert_true(fabs(u / e.effect[j].standard_error - 1) < 1e-8);
+    assert_true(fabs(dof - e.effect[j].dof) < 1e-5);
+  }
+  assert_true(e.effect[0].dof > (double)e.split_plot.plot_dof);
+  assert_ok(&test_context, fg_experiment_predict(&test_context, &e, setting, &p));
+  assert_ok(&test_context, fg_model_row(&test_context, &e.model, setting, row));
+  assert_true(fabs(sqrt(fg_mixed_variance(&mixed, row, false, &dof)) / p.standard_error - 1) <
+              1e-8);
+  assert_true(fabs(dof - p.dof) < 1e-5);
+  assert_true(fabs(sqrt(fg_mixed_variance(&mixed, row, true, &dof)) / p.run_standard_error - 1) <
+              1e-8);
+  assert_true(fabs(dof - p.run_dof) < 1e-5);
+  fg_mixed_free(&mixed);
+  fg_levels_free(&plots);
+  fg_experiment_free(&e);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(missing_runs_are_analysed_as_by_r),
       cmocka_unit_test(complete_plans_agree_with_the_strata),
       cmocka_unit_test(factors_within_plots_are_estimated_without_whole_plot_dof),
+      cmocka_unit_test(terms_beside_words_are_tested_by_their_mean),
+      cmocka_unit_test(predictions_have_the_errors_of_both_strata),
       cmocka_unit_test(odd_plans_are_analysed_or_say_why),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

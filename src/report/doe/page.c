@@ -128,8 +128,8 @@ static void put_mixed(FILE *out, const fg_experiment *e) {
     fputs("</tr>\n", out);
   }
   fputs("</tbody></table></div>\n<p class=\"note\">Restricted likelihood, with the degrees of "
-        "freedom of Kenward and Roger; each term beside all others; a number that interacts "
-        "with words is tested at their first levels.</p>\n",
+        "freedom of Kenward and Roger; each term beside all others, as the mean over "
+        "the levels of words that the term interacts with.</p>\n",
         out);
 }
 

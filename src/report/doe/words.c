@@ -118,10 +118,12 @@ static fg_status conclude_effect(fg_context *ctx, const fg_experiment *e, size_t
 }
 
 static fg_status conclude_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
-  size_t found = 0, judged = 0;
+  size_t found = 0, judged = 0, told = 0;
   char rest[600] = "", reference[300];
   for (size_t j = 0; j < e->regression.columns; j++) {
-    if (!fg_experiment_of_interest(e, j) || !isfinite(fg_experiment_p_value(e, j))) continue;
+    if (!fg_experiment_of_interest(e, j)) continue;
+    told++;
+    if (!isfinite(fg_experiment_p_value(e, j))) continue;
     judged++;
     if (fg_experiment_p_value(e, j) < 1 - e->confidence) {
       found++;
@@ -135,6 +137,11 @@ static fg_status conclude_effects(fg_context *ctx, const fg_experiment *e, fg_se
                    e->regression.coefficient[j].name, reference);
     }
   }
+  if (!told)
+    return fg_sentences_add(
+        ctx, s,
+        "No effect can be judged: none can be told apart from the blocks or from others. Change "
+        "the factors within blocks, and each without the others.");
   if (!judged)
     return fg_sentences_add(
         ctx, s,
