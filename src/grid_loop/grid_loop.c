@@ -12,6 +12,8 @@ enum { DOF_MIN = 3 };
 /* Of a map beside which effects are sought, and of the last one. */
 #define MARKS_PER_SPLINE      3.0
 #define FINE_MARKS_PER_SPLINE 1.5
+/* A model whose marks scatter by so much less than another's shows that one to be wrong. */
+#define ADEQUATE_RATIO 0.8
 /* A map must be more likely than none by this much. */
 #define MAP_LIKELIHOOD 4.0
 
@@ -107,7 +109,16 @@ static fg_status build_from_maps(fg_context *ctx, grid_problem *problem) {
   return fg_grid_find_sizes(ctx, problem);
 }
 
-/* The more likely of both ways. */
+/* Jumps at some places follow any curve between the marks, but down to their noise only where they
+ * are there. Where both do, the likelihood decides. */
+static bool are_maps_better(const grid_model *by_effects, const grid_model *by_maps,
+                            double more_likely) {
+  double ratio = by_maps->mark_sd / by_effects->mark_sd;
+  if (ratio < ADEQUATE_RATIO || ratio > 1 / ADEQUATE_RATIO) return ratio < 1;
+  return more_likely > 0;
+}
+
+/* The better of both ways. */
 static fg_status build_model(fg_context *ctx, grid_problem *problem) {
   double by_effects, by_maps;
   fg_grid_begin_effects(problem);
@@ -123,7 +134,7 @@ static fg_status build_model(fg_context *ctx, grid_problem *problem) {
     problem->model = empty;
     FG_TRY(build_from_maps(ctx, problem));
     FG_TRY(find_likelihood(ctx, problem, &by_maps));
-    if (by_effects < by_maps) problem->model = kept;
+    if (!are_maps_better(&kept, &problem->model, by_effects - by_maps)) problem->model = kept;
   }
   FG_TRY(fg_grid_find_sizes(ctx, problem));
   return fg_grid_loosen_shapes(ctx, problem);

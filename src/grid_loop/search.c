@@ -19,6 +19,8 @@
 #define WAVE_MAX_SHARE 0.9
 /* Places on either side at which a shape is tried, and rounds of that, each closer. */
 enum { SCAN_PLACES = 5, SCAN_ROUNDS = 4, LOOSE_ROUNDS = 4 };
+/* Min width of chips, marks. */
+#define MARKS_PER_CHIP 1.5
 /* A shape that a linear step moves by more than this share of it is not told well enough. */
 #define LOOSE_SHARE 0.2
 
@@ -82,6 +84,16 @@ static bool is_no_ripple(const grid_problem *problem, const grid_effect *candida
          (wave < min || wave > WAVE_MAX_SHARE * length || alike);
 }
 
+/* Chips of about the marks' own pitch, each with one mark, show the marks a slow ramp or curve. */
+static bool are_no_chips(const grid_problem *problem, const grid_effect *candidate) {
+  return candidate->kind->jumps && candidate->kind->shapes == 2 &&
+         candidate->shape[1] < MARKS_PER_CHIP * problem->board[0].pitch_mm;
+}
+
+static bool is_untold(const grid_problem *problem, const grid_effect *candidate) {
+  return is_no_ripple(problem, candidate) || are_no_chips(problem, candidate);
+}
+
 /* Moves one shape to the best place of a few about it. Scores have jumps over the places of jumps,
  * so no descent would do. */
 static void scan_shape(grid_score_work *work, size_t s, double reach, grid_effect *best,
@@ -90,7 +102,7 @@ static void scan_shape(grid_score_work *work, size_t s, double reach, grid_effec
   for (int i = -SCAN_PLACES; i <= SCAN_PLACES; i++) {
     grid_effect tried = about;
     tried.shape[s] += reach * i / SCAN_PLACES;
-    if (!i || is_no_ripple(work->problem, &tried)) continue;
+    if (!i || is_untold(work->problem, &tried)) continue;
     double own = fg_grid_score(work, &tried);
     if (own > *score) *best = tried, *score = own;
   }
@@ -114,7 +126,7 @@ static double search_kind(grid_score_work *work, const fg_effect *kind, grid_eff
   for (size_t i = 0; i < starts; i++) {
     double reach[FG_FIELD_SHAPES];
     grid_effect candidate = candidate_of(problem, kind, i, reach);
-    if (is_no_ripple(problem, &candidate)) continue;
+    if (is_untold(problem, &candidate)) continue;
     double own = fg_grid_score(work, &candidate);
     if (own <= score) continue;
     score = own;

@@ -306,8 +306,8 @@ def write_foils(cases, out):
 
 def write_page(cases, path):
     with open(path, 'w') as out:
-        print('# Maps of a bed, and foils through them\n\n`/usr/bin/python3 tests/bench/grid_maps.py build/foilgauge maps.jsonl --beds 50`, '
-              'the same with `foils.jsonl --beds 20 --first 100 --foils`\nand with `peers.jsonl --beds 8 --first 200 --peer`, then `cat maps.jsonl foils.jsonl peers.jsonl >all.jsonl` and\n'
+        print('# Maps of a bed, and foils through them\n\n`/usr/bin/python3 tests/bench/grid_maps.py build/foilgauge maps.jsonl --beds 30`, '
+              'the same with `foils.jsonl --beds 10 --first 100 --foils`\nand with `peers.jsonl --beds 8 --first 200 --peer`, then `cat maps.jsonl foils.jsonl peers.jsonl >all.jsonl` and\n'
               '`tests/bench/grid_maps.py build/foilgauge all.jsonl --beds 0 --out reports/grid_maps.md` make this page.\nBeds are %g mm wide '
               '(%g with a foil, at %d dpi), dots lie %g mm apart, %d dpi. Every bed has a wrong scale of each axis, a shear and\nsmooth '
               'random waves of 2 to 12 µm; half of them a keystone and a bow, a third a ripple, a quarter tilted chips with gaps, a '

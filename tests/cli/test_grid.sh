@@ -177,6 +177,25 @@ P
 expect 0 "" "$program" measure large.png --design pitch.json --model large_model.json -o large_corrected.json
 near "marks through the model of a ripple" "$(member large_corrected.json rms_um)" 0 0.3
 
+# A curve over y on a board that lies askew: chips of the marks' own pitch would show the marks the same ramp, and are not claimed.
+cat >curve.json <<'S'
+{"schema": "foilgauge/render/1", "seed": 1, "scanner": {"dpi": 600, "noise": 4},
+ "effects": [{"id": "scan.scale_y", "value": 0.001},
+  {"id": "free.scan.y", "knots": [[0, 3], [4, 2.52], [8, 1.25], [12, -0.43], [16, -1.96], [20, -2.88], [24, -2.87], [28, -1.96], [32, -0.44]]},
+  {"id": "free.scan.x", "knots": [[0, 2.52], [5, 2.99], [10, 2.33], [15, 0.78], [20, -1.05], [25, -2.49], [30, -3], [36, -2.12]]}],
+ "grids": [{"marks": "dots", "centre_mm": [17.3, 15.5], "pitch_mm": 2.5, "columns": 11, "rows": 9, "rotate_deg": 4, "place_um": 0.25}]}
+S
+expect 0 "" "$program" render curve.json -o curve.png
+expect 0 "" "$program" loop curve.png --design pitch.json -o curve_loop.json --model-out curve_model.json
+python3 - <<'P' || fail "chips that no marks can show"
+import json
+r = json.load(open('curve_loop.json'))
+assert not any(c['id'].startswith('scan.chip') and c['verdict'] != 'absent' for c in r['claims']), r['claims']
+x = 17.3
+near = [p['dy_um'] for p in r['map'] if abs(p['x_mm'] - x) < 6 and abs(p['y_mm'] - 15.5) < 1.5]
+assert max(near) - min(near) < 5, near
+P
+
 # A pitch of 2.5 mm that is stated as 2.54 would be a scale that no flatbed has.
 sed 's/2\.5,/2.54,/' pitch.json >inch.json
 expect 0 "" "$program" loop step.png --design inch.json -o inch_loop.json
@@ -201,6 +220,19 @@ for d in (inside, beyond):
     assert abs(d['radius_mm'] - 5) < 2.5 * d['u_radius_mm'], d
 assert beyond['u_radius_mm'] > 1.5 * inside['u_radius_mm'] > 0, (inside, beyond)
 assert 'beyond_model_region' in beyond['flags'] and not inside['flags'], (inside['flags'], beyond['flags'])
+P
+# Askew as straight: the curve is a map's, and no cubic with steps.
+sed 's/"rotate_deg": 1/"rotate_deg": 7/' part.json >askew.json
+expect 0 "" "$program" render askew.json -o askew.png
+expect 0 "" "$program" loop askew.png --design pitch.json -o askew_loop.json --model-out askew_model.json
+expect 0 "" "$program" measure beyond.png --form discs --tone linear --model askew_model.json -o askew_discs.json
+python3 - <<'P' || fail "U of a pin beyond the map of a board that lies askew"
+import json
+report = json.load(open('askew_loop.json'))
+assert report['noise_um']['map'] > 4, report['noise_um']
+assert not [c for c in report['claims'] if c['id'] == 'scan.optical_cubic' and c['verdict'] == 'found'], report['claims']
+for d in json.load(open('askew_discs.json'))['discs']:
+    assert abs(d['radius_mm'] - 5) < 2.5 * d['u_radius_mm'], d
 P
 
 # Names are for displacements that no map follows: tilted chips with gaps, and a ripple whose period is as uncertain as the marks make it.
