@@ -93,7 +93,7 @@ typedef struct fg_grid_loop_result {
   size_t map_columns, map_rows;
   double wave_mm, short_wave_mm; /* a ripple in the model, and the one that the marks show as it; 0:
                                     none */
-  double telling_turn_deg; /* turn of the board that would tell these two apart */
+  double telling_turn_deg;       /* turn of the board that would tell these two apart */
   char sentence[FG_GRID_WORDS], advice[FG_GRID_WORDS];
 } fg_grid_loop_result;
 

@@ -138,7 +138,8 @@ fg_status fg_surface_make(fg_context *ctx, const fg_model *model, const fg_regre
                       surface));
   }
   if (!surface->factors)
-    return fg_fail(ctx, FG_ERR_USAGE, "the model has no numeric factor whose effect can be told: there is no surface");
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "the model has no numeric factor whose effect can be told: there is no surface");
   FG_TRY(find_eigenvalues(ctx, surface));
   surface->kind = kind_of(surface);
   surface->has_stationary = surface->kind != FG_SURFACE_PLANE && surface->kind != FG_SURFACE_RIDGE;

@@ -163,6 +163,24 @@ static void few_foils_are_an_interval(void **state) {
   assert_true(width[1] < 0.7 * width[0]);
 }
 
+/* Of many foils and few draws, what the foils tell is no narrower than what the draws tell. */
+static void few_draws_of_many_foils(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_stock stock = made_stock(600, 0.05, 0.03);
+  fg_assembly_plan plan = made_plan(150, 1);
+  fg_assembly_result r;
+  assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, true, &r));
+  for (size_t k = 0; k < plan.limits; k++) {
+    const fg_assembly_share *s = &r.within[k];
+    if (!(s->share > 0.1 && s->share < 0.9)) continue;
+    assert_true(s->foils_high - s->foils_low > s->draws_high - s->draws_low);
+  }
+  assert_true(r.within[0].share > 0.1 && r.within[0].share < 0.9);
+  fg_assembly_result_free(&r);
+  fg_stock_free(&stock);
+}
+
 /* Clopper and Pearson's table: 0 of 10 at 95 % is 0 to 30.85 %, 5 of 10 18.71 to 81.29 %. */
 static void intervals_are_exact(void **state) {
   (void)state;
@@ -242,6 +260,7 @@ int main(void) {
       cmocka_unit_test(a_bearing_has_different_foils),
       cmocka_unit_test(a_seed_is_a_result),
       cmocka_unit_test(few_foils_are_an_interval),
+      cmocka_unit_test(few_draws_of_many_foils),
       cmocka_unit_test(intervals_are_exact),
       cmocka_unit_test(uncertainty_is_a_share_of_its_own),
       cmocka_unit_test(design_and_sorting),

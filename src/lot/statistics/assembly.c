@@ -243,24 +243,27 @@ static fg_status draw_set_share(fg_context *ctx, workspace *b, size_t set,
  * BEARINGS_OF_A_SET bearings; the second part is known. The first is the scatter of a share of a
  * number of independent bearings, reduced because few foils tell little of their own scatter (Korn
  * and Graubard 1998). The exact interval is that of this number. Where the sets do not tell it,
- * bearings without a common foil are counted. */
-static void find_foils_interval(const double *share, double confidence, double foils, double pads,
+ * bearings without a common foil are counted. The share itself is of a limited number of draws,
+ * whose scatter comes on top. */
+static void find_foils_interval(const double *share, const fg_assembly_plan *plan, double foils,
                                 fg_assembly_share *target) {
-  double mean = 0, variance = 0, tail = (1 - confidence) / 2;
+  double mean = 0, variance = 0, tail = (1 - plan->confidence) / 2;
+  double drawn = (double)plan->bearings;
   for (size_t i = 0; i < SETS; i++)
     mean += share[i] / SETS;
   for (size_t i = 0; i < SETS; i++)
     variance += (share[i] - mean) * (share[i] - mean) / (SETS - 1);
-  double of_draws = mean * (1 - mean) / BEARINGS_OF_A_SET, bearings = foils / pads;
+  double of_draws = mean * (1 - mean) / BEARINGS_OF_A_SET,
+         bearings = fmin(foils / (double)plan->layout.pads, drawn);
   bool shows = target->share > 0 && target->share < 1 && variance > of_draws && foils > 1;
   target->foils_by = shows ? FG_ASSEMBLY_BY_BOOTSTRAP : FG_ASSEMBLY_BY_BEARINGS;
   if (shows) {
     double of_foils = (variance - of_draws) * foils / (foils - 1);
     double wider =
         fg_distribution_t_quantile(tail, foils - 1) / fg_distribution_normal_quantile(tail);
-    bearings = target->share * (1 - target->share) / (of_foils * wider * wider);
+    bearings = 1 / (of_foils * wider * wider / (target->share * (1 - target->share)) + 1 / drawn);
   }
-  fg_assembly_interval(target->share * bearings, bearings, confidence, &target->foils_low,
+  fg_assembly_interval(target->share * bearings, bearings, plan->confidence, &target->foils_low,
                        &target->foils_high);
 }
 
@@ -278,8 +281,7 @@ static fg_status resample_foils(fg_context *ctx, workspace *b, fg_assembly_resul
       all[k * SETS + set] = share[k];
   }
   for (size_t k = 0; k <= limits && status == FG_OK; k++)
-    find_foils_interval(all + k * SETS, plan->confidence, (double)b->stock->foils,
-                        (double)plan->layout.pads,
+    find_foils_interval(all + k * SETS, plan, (double)b->stock->foils,
                         k < limits ? &result->within[k] : &result->assembled);
   free(all);
   return status;
