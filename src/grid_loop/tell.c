@@ -3,6 +3,7 @@
 #include <gsl/gsl_blas.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/text.h"
@@ -322,6 +323,21 @@ fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
 /* Published scales of flatbeds are off by no more across an A4 sheet. */
 #define USUAL_SCALE_MAX 0.006
 
+/* Adds the found effects beside the axes, with U. */
+static void say_effects(fg_grid_loop_result *r) {
+  size_t said = 0;
+  for (size_t i = 0; i < r->claims; i++) {
+    const fg_grid_claim *claim = &r->claim[i];
+    size_t used = strlen(r->sentence);
+    if (claim->of_board || claim->ratio || claim->verdict != FG_GRID_FOUND) continue;
+    fg_text_clip(r->sentence + used, sizeof r->sentence - used, "%s%s (%.3g ± %.2g µm)",
+                 said++ ? ", " : " Found besides: ", claim->words, fabs(claim->value),
+                 2 * claim->u);
+  }
+  size_t used = strlen(r->sentence);
+  if (said) fg_text_clip(r->sentence + used, sizeof r->sentence - used, ".");
+}
+
 void fg_grid_loop_say(fg_grid_loop_result *r) {
   const fg_grid_claim *ratio = &r->claim[0];
   if (r->tied && ratio->verdict == FG_GRID_TIED)
@@ -348,6 +364,7 @@ void fg_grid_loop_say(fg_grid_loop_result *r) {
     fg_text_clip(r->sentence, sizeof r->sentence,
                  "No difference of the axes shows; one pose would not tell scanner and board "
                  "apart.");
+  say_effects(r);
   r->advice[0] = 0;
   if (!r->axes_known)
     fg_text_clip(r->advice, sizeof r->advice,

@@ -166,6 +166,8 @@ assert ripple['id'] == 'scan.carriage_ripple' and abs(ripple['shape_mm'] - 6.1) 
 assert abs(ripple['amplitude_um'] - 8) < 4 * ripple['u_amplitude_um'] + 0.02, ripple
 ripple, = found('slow')
 assert abs(ripple['shape_mm'] - 21) < 0.1 and abs(ripple['amplitude_um'] - 15) < 0.2, ripple
+summary = json.load(open('slow_loop.json'))['summary']
+assert 'Found besides: a ripple of the carriage (15 ± 0.' in summary, summary
 step, = found('step')
 assert step['id'] == 'scan.row_step' and abs(step['amplitude_um'] - 20) < 0.2, step
 advice = json.load(open('alike_loop.json'))['advice']
