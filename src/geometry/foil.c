@@ -139,14 +139,14 @@ static double get_rms(const fg_bump *b) {
 
 /* By how much a bump's scatter may exceed the median of all. */
 static double rms_margin(fg_context *ctx, const fg_foil *foil, double median) {
-  double *off = NULL, sd = NAN;
+  double *off = NULL, limit;
   size_t n = 0;
   if (fg_memory_allocate(ctx, foil->bump_count, sizeof *off, (void **)&off) != FG_OK) return NAN;
   for (size_t i = 0; i < foil->bump_count; i++)
     if (isfinite(foil->bumps[i].rms_um)) off[n++] = fabs(foil->bumps[i].rms_um - median);
-  if (n) sd = fg_robust_sd(off, n);
+  limit = fg_spread_limit(off, n, POOR_SIGMAS);
   free(off);
-  return fmax(POOR_SHARE * median, POOR_SIGMAS * sd);
+  return fmax(POOR_SHARE * median, limit);
 }
 
 static bool is_beyond(double value, double reference, double factor) {
