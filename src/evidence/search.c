@@ -25,7 +25,7 @@ enum {
 #define REACH 60.0
 /* The likeliest models, of which every part is left out in turn; models that get their own scatter,
  * and whose effects are fitted together. */
-enum { SHORTENED = 16, SCATTERED = 24, REFITTED = 12 };
+enum { SHORTENED = 16, SCATTERED = 24, REFITTED = 12, NAMED_REFITTED = 4 };
 enum { COPIES_MAX = 3 };
 /* Sets whose parts are exchanged; their rests without one part, at most; how often. */
 enum { EXCHANGED = 4, EXCHANGES = 12, EXCHANGE_ROUNDS = 2 };
@@ -430,13 +430,16 @@ static bool explains_scatter(const fg_evidence_search *s, const fg_evidence_mode
   return s->problem.edge_fit->discs && model->parts == 1 && model->part[0]->rival;
 }
 
-/* Fits the likeliest models together, and finds the scatter of the bumps beside them. */
+/* Fits the likeliest models together, and finds the scatter of the bumps beside them. Sets of named
+ * effects alone get as many turns where those of one that holds a rival fill the first places. */
 static fg_status refit_models(fg_context *ctx, fg_evidence_search *s) {
   double top = s->models[0].score;
+  size_t named = 0;
   for (size_t m = 0; m < s->count; m++) {
     fg_evidence_model *model = &s->models[m];
-    if (m >= SCATTERED && !explains_scatter(s, model)) continue;
-    if (m < REFITTED && model->parts > 1 && model->score > top - REACH)
+    bool among_named = fg_evidence_is_named(model) && model->parts && named++ < NAMED_REFITTED;
+    if (m >= SCATTERED && !among_named && !explains_scatter(s, model)) continue;
+    if ((m < REFITTED || among_named) && model->parts > 1 && model->score > top - REACH)
       FG_TRY(fg_evidence_refit_model(ctx, s, model));
     FG_TRY(find_scatter(ctx, s, model));
     set_score(s, model);
