@@ -355,6 +355,20 @@ static void find_certain(const fg_evidence_search *s, double margin, fg_evidence
   }
 }
 
+/* Returns the score of the likeliest model without the named effects of tie[0] but for the certain
+ * ones. */
+static double find_score_without(const fg_evidence_search *s, const fg_evidence_verdict *v) {
+  const fg_evidence_model *model = &v->tie[0];
+  for (size_t m = 0; m < s->count; m++) { /* sorted */
+    bool holds = false;
+    for (size_t k = 0; k < model->parts && !holds; k++)
+      holds = !v->certain[k] && fg_effect_bears_name(model->part[k]->effect) &&
+              fg_evidence_holds(&s->models[m], model->part[k]->effect);
+    if (!holds) return s->models[m].score;
+  }
+  return -INFINITY;
+}
+
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
  * share of the evidence. What leads it by less is no rival; what follows it closely is. */
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
@@ -374,6 +388,7 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
                : v->ties > 1    ? FG_EVIDENCE_TIED
                                 : FG_EVIDENCE_FOUND;
   if (v->outcome == FG_EVIDENCE_UNATTRIBUTED) find_certain(s, margin, v);
+  v->score_without = find_score_without(s, v);
   return FG_OK;
 }
 

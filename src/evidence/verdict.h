@@ -24,8 +24,9 @@ typedef struct fg_evidence_verdict {
   size_t ties;
   /* Of UNATTRIBUTED: named effects of tie[0] that no explanation can do without. */
   bool certain[FG_EVIDENCE_PARTS];
-  double p_null; /* posterior probability of no effect */
-  double margin; /* ln; what gains less may be an error of the columns */
+  double score_without; /* of the likeliest model without the others of its named effects */
+  double p_null;        /* posterior probability of no effect */
+  double margin;        /* ln; what gains less may be an error of the columns */
 } fg_evidence_verdict;
 
 /* Returns true when a model holds all causes of another. */

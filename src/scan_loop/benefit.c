@@ -137,6 +137,25 @@ void fg_benefits_add(fg_benefits *benefits, const fg_measurement *before,
   add_discs(&benefits->discs, before, corrected);
 }
 
+static void weigh(fg_benefit *benefit, const double *weight, size_t count) {
+  benefit->mean = true;
+  for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
+    benefit->weight[e] = e < count ? weight[e] : 0;
+}
+
+void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count) {
+  for (size_t f = 0; f < benefits->foils; f++)
+    weigh(&benefits->foil[f], weight, count);
+  weigh(&benefits->discs, weight, count);
+}
+
+double fg_benefit_weight(const fg_benefit *benefit, size_t explanation) {
+  double sum = 0;
+  for (size_t e = 0; e < benefit->explanations; e++)
+    sum += benefit->weight[e];
+  return sum > 0 ? benefit->weight[explanation] / sum : 1 / (double)benefit->explanations;
+}
+
 /* ---- noise ---- */
 
 void fg_benefit_add_noise(fg_benefit *benefit, size_t item,
@@ -181,10 +200,11 @@ void fg_benefits_add_step(fg_benefits *benefits, const fg_measurement *corrected
 typedef struct sums {
   double items, noise, own;
   bool curve;   /* an explanation is a free curve */
-  bool mean;    /* the one move is the mean over all models */
+  bool mean;    /* the mean of the moves is that over all models */
   bool misfit;  /* which do not follow all of the residual */
   bool refused; /* by known sizes */
   double product[FG_BENEFIT_EXPLANATIONS_MAX][FG_BENEFIT_EXPLANATIONS_MAX];
+  double weight[FG_BENEFIT_EXPLANATIONS_MAX]; /* sum 1 */
   size_t explanations;
 } sums;
 
@@ -199,7 +219,11 @@ static bool is_known(const fg_benefit *benefit, size_t item, int k) {
 }
 
 static void sum_up_dimension(const fg_benefit *benefit, int k, sums *s) {
-  if (benefit->explanations > s->explanations) s->explanations = benefit->explanations;
+  if (benefit->explanations > s->explanations) {
+    s->explanations = benefit->explanations;
+    for (size_t e = 0; e < s->explanations; e++)
+      s->weight[e] = fg_benefit_weight(benefit, e);
+  }
   s->curve = s->curve || benefit->curve;
   s->mean = s->mean || benefit->mean;
   s->misfit = s->misfit || benefit->misfit;
@@ -231,24 +255,24 @@ static double size_of(const sums *s, const double *part) {
   return sum;
 }
 
-/* Mean square of how far the explanations lie from the move. */
+/* Weighted mean square of how far the explanations lie from the move. */
 static double scatter_about(const sums *s, const double *part) {
   double sum = 0, size = size_of(s, part);
   if (s->explanations < 2) return 0;
   for (size_t e = 0; e < s->explanations; e++)
-    sum += s->product[e][e] - 2 * move_products(s, part, e) + size;
-  return fmax(0, sum) / (double)s->explanations;
+    sum += s->weight[e] * (s->product[e][e] - 2 * move_products(s, part, e) + size);
+  return fmax(0, sum);
 }
 
-static void fill_mean(size_t explanations, double *part) {
+static void fill_mean(const sums *s, double *part) {
   for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
-    part[e] = e < explanations ? 1 / (double)explanations : 0;
+    part[e] = e < s->explanations ? s->weight[e] : 0;
 }
 
 /* Finds the shortest move: steps towards the explanation of the smallest gain, until its gain
  * equals that of the others (Gilbert 1966). */
 static void fill_shortest(const sums *s, double *part) {
-  fill_mean(s->explanations, part);
+  fill_mean(s, part);
   for (int step = 0; step < SHORTEST_STEPS && s->explanations > 1; step++) {
     size_t worst = 0;
     for (size_t e = 1; e < s->explanations; e++)
@@ -276,7 +300,7 @@ static double fill_agreed(const sums *s, double *part) {
   double shortest[FG_BENEFIT_EXPLANATIONS_MAX], mean[FG_BENEFIT_EXPLANATIONS_MAX];
   double low = 0, high = 1;
   fill_shortest(s, shortest);
-  fill_mean(s->explanations, mean);
+  fill_mean(s, mean);
   memcpy(part, shortest, sizeof shortest);
   double gain = size_of(s, shortest);
   for (int step = 0; step < AGREED_STEPS && s->explanations > 1; step++) {
@@ -295,13 +319,13 @@ static double fill_agreed(const sums *s, double *part) {
 /* Decides: `part` gets the move that the explanations agree about, else their mean. */
 static fg_correction_reason decide_move(const sums *s, double *part) {
   double agreed[FG_BENEFIT_EXPLANATIONS_MAX];
-  fill_mean(s->explanations, part);
+  fill_mean(s, part);
   if (s->items < 1) return FG_CORRECTION_NONE;
   if (s->refused) return FG_CORRECTION_DOUBTFUL;
   double mean = size_of(s, part), scatter = scatter_about(s, part);
   if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
   if (s->mean) {
-    bool helps = !s->misfit && mean > (s->curve ? CURVE_BENEFIT_RATIO : 1) * s->noise;
+    bool helps = !s->misfit && mean > (s->curve ? CURVE_BENEFIT_RATIO : 1) * (s->noise + scatter);
     return helps ? FG_CORRECTION_HELPS : FG_CORRECTION_DOUBTFUL;
   }
   double gain = fill_agreed(s, agreed);
@@ -379,7 +403,7 @@ void fg_benefit_moment(const fg_benefit *benefit, size_t item, const fg_benefit_
       for (size_t e = 0; e < benefit->explanations; e++) {
         const double *move = benefit->item[item].move[e];
         double product = (move[a] - made[a]) * (move[b] - made[b]);
-        if (isfinite(product)) moment[a][b] += product / (double)benefit->explanations;
+        if (isfinite(product)) moment[a][b] += fg_benefit_weight(benefit, e) * product;
       }
     }
 }

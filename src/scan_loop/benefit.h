@@ -24,8 +24,12 @@
  * directions follow R0, thickness, residuals and edges follow the corrected edges when any
  * dimension is moved.
  *
+ * Where evidence weighs the explanations, t is the weighted mean of the m_i, and u² includes their
+ * weighted scatter about it: nothing is nearer.
+ *
  * The u of a reported value includes the second moment, about that value, of the possible
- * corrections, all explanations with equal weight: moved, u² of the move; left, m² + u². */
+ * corrections, all explanations with equal weight where none is known: moved, u² of the move; left,
+ * m² + u². */
 #ifndef FG_SCAN_LOOP_BENEFIT_H
 #define FG_SCAN_LOOP_BENEFIT_H
 
@@ -48,11 +52,13 @@ typedef struct fg_benefit {
   size_t items;
   fg_point centre[FG_BENEFIT_EXPLANATIONS_MAX]; /* moves of O */
   size_t explanations;                          /* measured successfully; the first is in force */
+  double weight[FG_BENEFIT_EXPLANATIONS_MAX];   /* of explanations, where `mean`; 0: equal */
   double noises;                                /* number of sums in `noise` */
   bool misfit;  /* the residual of the explanation in force exceeds noise: the fit's own u is too
                    small */
   bool curve;   /* an explanation holds a free curve */
-  bool mean;    /* its one move is the mean over all models by their evidence: nothing is nearer */
+  bool mean;    /* the mean of its moves is that over all models by their evidence: nothing is
+                   nearer */
   bool refused; /* by known sizes, from which the corrected ones lie farther */
   bool lost;    /* the explanation in force does not show the same bumps: the moves are unknown */
 } fg_benefit;
@@ -66,6 +72,11 @@ typedef struct fg_benefits {
 
 fg_status fg_benefits_open(fg_context *ctx, const fg_measurement *before, fg_benefits *benefits);
 void fg_benefits_close(fg_benefits *benefits);
+
+/* Sets the weights that evidence gives the explanations, in the order in which they are added. */
+void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count);
+/* Returns the share of one explanation in the mean. */
+double fg_benefit_weight(const fg_benefit *benefit, size_t explanation);
 
 /* Adds one explanation by its corrected measurement. The first one added is the one in force. */
 void fg_benefits_add(fg_benefits *benefits, const fg_measurement *before,

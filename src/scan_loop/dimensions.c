@@ -46,11 +46,15 @@ static double excess_beyond(const fg_explanation *one) {
   return one->excess - one->dof;
 }
 
-bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation) {
+double fg_scan_loop_excess_over_best(const fg_explanations *explanations, size_t explanation) {
   double min = INFINITY;
   for (size_t m = 0; m < explanations->count; m++)
     min = fmin(min, excess_beyond(&explanations->each[m]));
-  return excess_beyond(&explanations->each[explanation]) > min + UNLIKELY_CHI2;
+  return excess_beyond(&explanations->each[explanation]) - min;
+}
+
+bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation) {
+  return fg_scan_loop_excess_over_best(explanations, explanation) > UNLIKELY_CHI2;
 }
 
 static void add_scaled(fg_benefit *benefit, size_t item, double noise[FG_CORRECTED][FG_CORRECTED],

@@ -78,12 +78,13 @@ static size_t find_candidate(const fg_edge_fit *edge_fit, fg_explanations *to,
   return at;
 }
 
-/* `certain`: only these named effects of the model; NULL: all. */
+/* `behind`: by what the evidence, ln, is behind that of the first; `certain`: only these named
+ * effects of the model; NULL: all. */
 static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model *model,
-                            const double *middle_mm, double top, const bool *certain,
+                            const double *middle_mm, double behind, const bool *certain,
                             fg_explanations *to) {
   if (to->count == FG_EXPLANATIONS_MAX) return;
-  fg_explanation one = {.dof = 1, .excess = 1 + 2 * fmax(0, top - model->score)};
+  fg_explanation one = {.dof = 1, .excess = 1 + 2 * fmax(0, behind)};
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
     const fg_effect *effect = shown_as(part);
@@ -114,9 +115,11 @@ static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *
     return;
   }
   for (size_t k = 0; k < v->ties; k++)
-    add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score, NULL, to);
+    add_explanation(edge_fit, &v->tie[k], v->middle_mm[k], v->tie[0].score - v->tie[k].score, NULL,
+                    to);
   if (v->tie[0].named && !fg_evidence_is_named(&v->tie[0]))
-    add_explanation(edge_fit, &v->tie[0], v->middle_mm[0], v->tie[0].score, v->certain, to);
+    add_explanation(edge_fit, &v->tie[0], v->middle_mm[0], v->tie[0].score - v->score_without,
+                    v->certain, to);
   to->p_value = fmin(to->p_value, fmax(v->p_null, DBL_MIN));
 }
 

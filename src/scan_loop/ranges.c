@@ -126,6 +126,8 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
                           const fg_joint_fit_result *fit, fg_measurement *tried) {
   if (!fit->edge_fit) return FG_OK;
   loop->unlikely[loop->tie_count] = fg_scan_loop_is_unlikely(&loop->explanations, explanation);
+  loop->tie_excess[loop->tie_count] =
+      fg_scan_loop_excess_over_best(&loop->explanations, explanation);
   loop->tie[loop->tie_count++] = fit->set;
   fg_status status = fg_scan_loop_correct_all(ctx, loop, fit, tried);
   if (status == FG_OK) widen_all(loop, tried);

@@ -221,7 +221,7 @@ static fg_status describe_models(fg_context *ctx, change_work *work) {
     add_numbers(work, of);
     FG_TRY(add_modes(ctx, work, of));
     for (size_t k = 0; k < model->others; k++)
-      add_source(work, of, &model->other[k], 1 / sqrt((double)(model->others + 1)));
+      add_source(work, of, &model->other[k], sqrt(fg_scanner_model_weight(model, k + 1)));
   }
   return FG_OK;
 }

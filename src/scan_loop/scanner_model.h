@@ -33,7 +33,14 @@ struct fg_scanner_model {
   /* Corrections by the explanations tied with it. */
   fg_field_list other[FG_EXPLANATIONS_MAX];
   size_t others;
+  /* Probabilities by evidence: of `fields`, then of every other one; 0: none are known. */
+  double weight[FG_BENEFIT_EXPLANATIONS_MAX];
+  size_t weights;
 };
+
+/* Returns the weight of the model's explanation, or of one tied with it; equal where none are
+ * known. */
+double fg_scanner_model_weight(const fg_scanner_model *model, size_t explanation);
 
 /* A scan that a model was found on. */
 typedef struct fg_scanner_model_input {
@@ -69,6 +76,7 @@ typedef struct fg_model_uncertainty {
   fg_measurement each[FG_BENEFIT_EXPLANATIONS_MAX]; /* owned: by the model, then by the explanations
                                                        tied with it */
   size_t count;
+  const fg_scanner_model *model;
   double *step[FG_MODEL_NUMBERS_MAX]; /* owned: displacement of every value by the uncertainty of
                                          one of the model's numbers */
   size_t steps;

@@ -188,6 +188,30 @@ static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_mode
   return read_date(ctx, root, model);
 }
 
+/* Reads what evidence gives the model and its alternatives; absent: nothing is known of it. */
+static fg_status read_weights(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *weights = cJSON_GetObjectItemCaseSensitive(root, "weights"), *item;
+  double sum = 0;
+  if (!weights) return FG_OK;
+  if (!cJSON_IsArray(weights) || (size_t)cJSON_GetArraySize(weights) != model->others + 1)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "`weights` must be an array of a number for `fields` and one for each of the %zu "
+        "alternatives",
+        model->others);
+  cJSON_ArrayForEach(item, weights) {
+    double weight = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+    if (!(weight >= 0 && weight <= 1))
+      return fg_fail(ctx, FG_ERR_DATA, "`weights[%zu]` is %g; 0 to 1 is allowed", model->weights,
+                     weight);
+    model->weight[model->weights++] = weight;
+    sum += weight;
+  }
+  if (fabs(sum - 1) > 1e-6)
+    return fg_fail(ctx, FG_ERR_DATA, "the sum of `weights` is %g; it must be 1", sum);
+  return FG_OK;
+}
+
 static fg_status read_others(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
   const cJSON *others = cJSON_GetObjectItemCaseSensitive(root, "alternatives"), *item;
   const cJSON *tied = cJSON_GetObjectItemCaseSensitive(root, "tied");
@@ -273,7 +297,8 @@ static fg_status read_model(fg_context *ctx, const cJSON *root, fg_scanner_model
   FG_TRY(read_map(ctx, root, model));
   FG_TRY(
       read_fields(ctx, "fields", cJSON_GetObjectItemCaseSensitive(root, "fields"), &model->fields));
-  return read_others(ctx, root, model);
+  FG_TRY(read_others(ctx, root, model));
+  return read_weights(ctx, root, model);
 }
 
 static void sum_text(const char *text, char sum[65]) {
@@ -327,6 +352,10 @@ bool fg_scanner_model_has_level(const fg_scanner_model *model) {
 
 bool fg_scanner_model_is_tied(const fg_scanner_model *model) {
   return model->tied;
+}
+
+double fg_scanner_model_weight(const fg_scanner_model *model, size_t explanation) {
+  return model->weights ? model->weight[explanation] : 1 / (double)(model->others + 1);
 }
 
 bool fg_scanner_model_is_empty(const fg_scanner_model *model) {

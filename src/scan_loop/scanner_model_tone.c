@@ -209,6 +209,8 @@ static const char *difference(const fg_model_tone *tone, const scan_state *scan,
     return "the contrast is another";
   if (findings & widening & ~tone->findings)
     return "the picture shows what the model's scans did not";
+  if ((findings ^ tone->findings) & FG_PICTURE_BLOCK_NOISE)
+    return "either it or the model's scans were compressed with loss (JPEG), not both";
   return NULL;
 }
 
@@ -217,7 +219,8 @@ fg_status fg_model_tone_apply(fg_context *ctx, const fg_model_tone *tone, unsign
   scan_state state;
   m->tone_note[0] = 0;
   if (!tone->gauges || m->picture.level_known || !see_state(m, &state)) return FG_OK;
-  const char *other = difference(tone, &state, m->picture.findings);
+  const unsigned loss = m->jpeg_quality ? FG_PICTURE_BLOCK_NOISE : 0;
+  const char *other = difference(tone, &state, m->picture.findings | loss);
   if (!other) {
     fg_level level = tone->level;
     level.u = hypot(level.u, u_sameness(tone, &state));

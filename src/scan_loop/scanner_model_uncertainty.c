@@ -239,8 +239,9 @@ fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *mod
                                     const fg_measurement *m, unsigned threads,
                                     fg_model_uncertainty *uncertainty) {
   fg_status status = FG_OK;
-  *uncertainty = (fg_model_uncertainty){.count = 0};
+  *uncertainty = (fg_model_uncertainty){.model = model};
   FG_TRY_EXIT(fg_benefits_open(ctx, m, &uncertainty->benefits));
+  if (model->weights) fg_benefits_weigh(&uncertainty->benefits, model->weight, model->weights);
   FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_modes(ctx, model, m, threads, uncertainty));
@@ -258,7 +259,7 @@ void fg_model_uncertainty_close(fg_model_uncertainty *uncertainty) {
   for (size_t k = 0; k < uncertainty->steps; k++)
     free(uncertainty->step[k]);
   fg_benefits_close(&uncertainty->benefits);
-  *uncertainty = (fg_model_uncertainty){.count = 0};
+  *uncertainty = (fg_model_uncertainty){.model = NULL};
 }
 
 /* Widens a grid's lattice by all numbers of the model, and by the explanations tied with it. */
@@ -268,7 +269,7 @@ static void widen_grid(const fg_model_uncertainty *uncertainty, fg_grid *grid) {
     fg_grid_widen(grid, &uncertainty->grid_step[k], 1);
   for (size_t k = 1; k < uncertainty->count; k++) {
     const fg_grid_moves by_tie = fg_grid_find_moves(&kept, uncertainty->each[k].grid);
-    fg_grid_widen(grid, &by_tie, 1 / sqrt((double)uncertainty->count));
+    fg_grid_widen(grid, &by_tie, sqrt(fg_scanner_model_weight(uncertainty->model, k)));
   }
 }
 
@@ -280,7 +281,7 @@ fg_status fg_model_uncertainty_widen(fg_context *ctx, const fg_model_uncertainty
   for (size_t k = 0; k < uncertainty->count; k++) {
     double *each = NULL;
     FG_TRY(find_moves(ctx, kept, &uncertainty->each[k], &each));
-    add_moves(kept, each, 1 / sqrt((double)uncertainty->count));
+    add_moves(kept, each, sqrt(fg_scanner_model_weight(uncertainty->model, k)));
     free(each);
   }
   return FG_OK;

@@ -47,6 +47,23 @@ void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_sca
   model->u_temperature_k = known ? calibration->u_temperature_k : NAN;
 }
 
+/* Takes the explanations tied with that of the model, with their probabilities where evidence gives
+ * them. */
+static void take_ties(const fg_scan_loop *loop, fg_scanner_model *made) {
+  double sum = made->weight[0] = exp(-0.5 * fg_scan_loop_excess_over_best(&loop->explanations, 0));
+  for (size_t k = 0; k < loop->tie_count; k++) {
+    if (loop->unlikely[k]) continue;
+    fg_effect_set_fields(&loop->edge_fit, &loop->tie[k], &made->other[made->others++]);
+    made->weight[made->others] = exp(-0.5 * loop->tie_excess[k]);
+    sum += made->weight[made->others];
+  }
+  made->tied = made->others > 0;
+  if (!loop->by_evidence) return;
+  made->weights = made->others + 1;
+  for (size_t k = 0; k < made->weights; k++)
+    made->weight[k] /= sum;
+}
+
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model) {
   fg_scanner_model *made = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
@@ -63,10 +80,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   made->tone = loop->tone;
   fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
   add_uncertain_scale(loop->u_scale, &made->fields);
-  for (size_t k = 0; k < loop->tie_count; k++)
-    if (!loop->unlikely[k])
-      fg_effect_set_fields(&loop->edge_fit, &loop->tie[k], &made->other[made->others++]);
-  made->tied = made->others > 0;
+  take_ties(loop, made);
   *model = made;
   return FG_OK;
 }
@@ -181,6 +195,10 @@ static const double *list_curve_region(const fg_subject *s, double *numbers, siz
   return list_corners(frame->first_mm, frame->last_mm, numbers, count);
 }
 
+static bool has_weights(const fg_subject *s) {
+  return ((const fg_scanner_model *)s->object)->weights > 0;
+}
+
 static bool has_artefact(const fg_subject *s) {
   return ((const fg_scanner_model *)s->object)->artefact.name[0];
 }
@@ -262,6 +280,12 @@ static const fg_member model_rows[] = {
               "they bend the region by a tenth at most"},
     {FG_ARRAY("alternatives", fg_scanner_model, other, others, &other_members),
      .highest = FG_EXPLANATIONS_MAX, .words = "corrections by the other explanations"},
+    {FG_NUMBERS_OF("weights", fg_scanner_model, weight, weights),
+     .schema = "{\"type\": \"array\", \"items\": {\"type\": \"number\", \"minimum\": 0, "
+               "\"maximum\": 1}}",
+     .present = has_weights,
+     .words = "probabilities of `fields` and of every alternative, by evidence, sum 1; absent: not "
+              "known, and taken as equal"},
 };
 static const fg_members model_members = FG_MEMBERS(model_rows);
 
@@ -294,10 +318,11 @@ static fg_status check_readable(fg_context *ctx, const fg_scanner_model *model) 
 
 /* Distortions that no model describes would be applied to every scan. Rows that jump are allowed: a
  * step of the carriage is an effect that the loop finds. So is a profile that no tone curve
- * explains: it is the same for all edges, and known diameters determine its level. */
+ * explains: it is the same for all edges, and known diameters determine its level. The blocks of a
+ * JPEG move edges at random, which their scatter tells, and all of them by as much, which is in
+ * their level. */
 fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *m) {
-  const unsigned spoiling =
-      FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW | FG_PICTURE_BLOCK_NOISE;
+  const unsigned spoiling = FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW;
   for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
     if (m->picture.findings & words->finding & spoiling)
       return fg_fail(ctx, FG_ERR_DATA,

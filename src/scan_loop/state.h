@@ -48,6 +48,7 @@ struct fg_scan_loop {
   fg_effect_set tie[FG_EXPLANATIONS_MAX]; /* the other explanations, fitted */
   bool unlikely[FG_EXPLANATIONS_MAX]; /* of the explanations: in the ranges, but without influence
                                          on corrections */
+  double tie_excess[FG_EXPLANATIONS_MAX]; /* chi² over that of the likeliest */
   size_t tie_count;
   fg_scan_loop_range *
       *ranges;             /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
@@ -148,6 +149,8 @@ void fg_scan_loop_put_ranges(fg_scan_loop *loop);
  * allowed, but one may leave far more than another. Such a set widens the ranges, but corrects
  * nothing and is in no model. */
 bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation);
+/* Returns the excess, chi², of an explanation over that of the likeliest. */
+double fg_scan_loop_excess_over_best(const fg_explanations *explanations, size_t explanation);
 
 /* Records the moves of an explanation, unless it is unlikely: `corrected` are all scans by its fit.
  * Call in their order, the one in force first. */

@@ -47,6 +47,7 @@ static fg_model_tone find_on(const fg_scan_loop *loop, const fg_measurement *sca
     asymmetry += disc->asymmetry;
     shown += fg_model_tone_shown_by(disc);
     tone.findings |= disc->picture.findings;
+    if (disc->flags & FG_BUMP_LOSSY) tone.findings |= FG_PICTURE_BLOCK_NOISE;
     if (isfinite(disc->picture.gamma)) {
       gamma += disc->picture.gamma;
       gammas++;

@@ -212,6 +212,12 @@ for name, more in (("steep", {"gamma": 2.2}), ("cut", {"tone_curve": [[0, 0], [1
     else:
         assert run.returncode == 65 and "state of the picture" in run.stderr and "no model is written" in run.stderr, run.stderr
         assert not os.path.exists(name + ".model"), name
+# The level of JPEGs goes to JPEGs alone.
+for findings in [], ["block_noise"]:
+    other = dict(models["straight"], fields=[], tone=dict(models["straight"]["tone"], findings=findings))
+    json.dump(other, open("lossy.model", "w"))
+    note = scan("lossless", [FOIL], options=["--model", "lossy.model"]).get("tone_note", "")
+    assert ("compressed with loss" in note) == bool(findings), (findings, note)
 # A gauge on the glass goes before the model; a model without tone is as it was.
 both = scan("both", [FOIL, leaf()], curve=CURVE, options=["--model", "free.model", *LEAF])
 assert both["gauges"][0]["used"] and "tone_note" not in both

@@ -70,7 +70,6 @@ expect 0 '1 foil of 1 scan' "$program" lot lot --design design.json --allow-loss
 sed 's/true/1/' recipe.json >wrong.json
 expect 65 'allow_lossy must be true or false' "$program" lot lot --recipe wrong.json -o no
 
-exit $failed
 
 # Sharp and noisy edges: what JPEG leaves of them is no tone curve of a wider edge.
 cat >sharp.json <<'J'
@@ -86,3 +85,21 @@ measured, truth = json.load(open("sharp_report.json"))["foils"][0]["bumps"], jso
 wrong = [1000 * (m["radius_mm"] - t["radius_mm"]) for m, t in zip(measured, truth)]
 assert max(map(abs, wrong)) < 1, wrong
 P
+
+# A plate whose picture once was a JPEG gives a model of the scanner as one without loss does.
+cat >plate.json <<'J'
+{"schema": "foilgauge/render/1", "seed": 6, "effects": [{"id": "scan.scale_y", "value": 0.0015}],
+ "discs": [{"centre_mm": [4, 4], "radius_mm": 2.5}, {"centre_mm": [12, 4], "radius_mm": 3}, {"centre_mm": [5, 13], "radius_mm": 3.5},
+           {"centre_mm": [14, 13], "radius_mm": 2}],
+ "scanner": {"dpi": 2400, "blur_px": 1.4, "noise": 1.5, "background": 33, "contrast": 167, "rough": {"jpeg": {"quality": 85}}}}
+J
+"$renderer" render plate.json -o plate.png || fail "render"
+expect 0 'block_noise' "$program" loop plate.png --form discs --model-out plate.model
+checks - <<'P' || fail "the model of a plate that once was a JPEG"
+import json
+field, = json.load(open("plate.model"))["fields"]
+off = field["amplitude_mm"][0] - 18 * 0.0015
+assert field["id"] == "scan.scale_y" and abs(off) < 2 * field["u_amplitude_mm"][0] < 18 * 0.0003, (off, field)
+P
+
+exit $failed

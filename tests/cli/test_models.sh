@@ -90,9 +90,12 @@ expect 65 'times as far on the glass as the 15 x 15 mm' "$program" measure a.png
 python3 - <<'P'
 import json
 model = json.load(open("left.json"))
-model["tied"], model["alternatives"] = True, [[]]
+model["tied"], model["alternatives"], model["weights"] = True, [[]], [0.99, 0.01]
+json.dump(model, open("likely.json", "w"))
+del model["weights"]
 json.dump(model, open("tied.json", "w"))
 P
+expect 0 'other explanations' "$program" measure scans/s1.png --model likely.json -o likely.out
 expect 0 'other explanations did as well' "$program" measure scans/s1.png --model tied.json -o tied.out
 expect 0 '' "$program" measure scans/s1.png -o scanned.out
 expect 0 '' "$program" measure scans/s1.png --model tied.json --html tied.html
@@ -115,6 +118,10 @@ assert [b["height_mm"] for b in tied["bumps"]] == [b["height_mm"] for b in scann
 off = abs(scanned["overall"]["radius_mm"] - sure["overall"]["radius_mm"])
 assert tied["overall"]["u_radius_mm"] > 0.6 * off > 0.3 * move > 10 * sure["overall"]["u_radius_mm"]
 assert tied["correction"]["overall_radius_mm"] == 0
+# The mean by weight is the correction; its u holds the rest of the doubt.
+likely, move_made = read("likely.out"), sure["overall"]["radius_mm"] - scanned["overall"]["radius_mm"]
+assert abs(likely["correction"]["overall_radius_mm"] - 0.99 * move_made) < 1e-6, (likely["correction"], move_made)
+assert abs(likely["correction"]["u_overall_radius_mm"] / (0.0995 * abs(move_made)) - 1) < 0.05, likely["correction"]
 assert {c["quantity"]: c["moved"] for c in tied["corrections"]} == dict.fromkeys(["overall_radius_mm", "radius_mm", "height_mm"], False)
 assert all(c["reason"].startswith("differs between explanations") for c in tied["corrections"])
 assert abs(tied["corrections"][0]["move_mm"]) > 0.4 * off  # the mean of all and nothing

@@ -124,6 +124,32 @@ static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
   }
 }
 
+/* The mean by weight, with the scatter about it in u. */
+static void evidence_weighs_explanations(void **state) {
+  (void)state;
+  static const struct {
+    double weight, moved, moment; /* of a move of 10 beside one of none */
+  } ties[] = {{1, 10, 0}, {0.98, 9.8, 1.96}, {0.6, 6, 24}, {0.4, 0, 40}, {0, 0, 0}};
+  for (size_t i = 0; i < sizeof ties / sizeof *ties; i++) {
+    in_row("ties[%zu]", i);
+    fg_benefit_item item[ITEMS];
+    fg_benefit benefit = open_benefit(item);
+    fg_benefits all = {.discs = benefit};
+    fg_benefit_decision decision;
+    double move[FG_CORRECTED], moment[FG_CORRECTED][FG_CORRECTED];
+    fg_benefits_weigh(&all, (const double[]){ties[i].weight, 1 - ties[i].weight}, 2);
+    explain(&all.discs, 10, 10, 10);
+    explain(&all.discs, 0, 0, 0);
+    decide(&all.discs, &decision);
+    fg_benefit_move(&all.discs, 0, &decision, move);
+    fg_benefit_moment(&all.discs, 0, &decision, moment);
+    for (int k = R0; k <= H; k++) {
+      assert_near(move[k], ties[i].moved * UM, 1e-9);
+      assert_near(moment[k][k], ties[i].moment * UM * UM, 1e-12);
+    }
+  }
+}
+
 /* A move that both explanations agree about stays whole where they differ about another bump. */
 static void one_undecided_bump_leaves_the_others_corrected(void **state) {
   (void)state;
@@ -376,6 +402,7 @@ int main(void) {
       cmocka_unit_test(negligible_corrections_follow_the_others),
       cmocka_unit_test(unfitted_bumps_move_nothing),
       cmocka_unit_test(a_tie_moves_as_far_as_all_explanations_agree),
+      cmocka_unit_test(evidence_weighs_explanations),
       cmocka_unit_test(one_undecided_bump_leaves_the_others_corrected),
       cmocka_unit_test(no_explanation_is_made_worse),
       cmocka_unit_test(all_bumps_of_a_kind_are_one_decision),

@@ -156,6 +156,7 @@ static void unreadable_scanner_models_are_not_written(void **state) {
   "\"shape\":[" centre "],\"u_shape\":[0.1]}"
 #define FIELDS(list) "\"fields\":[" list "],\"alternatives\":[]}"
 #define GOOD         SCALE("0.036", "1e-6")
+#define TIED         "\"fields\":[" GOOD "],\"alternatives\":[[]]}"
 
 static void impossible_scanner_models_are_refused(void **state) {
   static const struct {
@@ -182,6 +183,10 @@ static void impossible_scanner_models_are_refused(void **state) {
       {HEAD PLACE "\"fields\":[" GOOD "],\"alternatives\":[[],[" SCALE("0.1", "-1") "]]}",
        "`alternatives[1][0].u_amplitude_mm[0]`", "-1", "0 to 1"},
       {HEAD PLACE "\"fields\":[" GOOD "],\"alternatives\":[7]}", "`alternatives[0]`", "", "array"},
+      {HEAD PLACE "\"weights\":[0.5]," TIED, "`weights`", "1 alternatives", "array"},
+      {HEAD PLACE "\"weights\":[1.5,-0.5]," TIED, "`weights[0]`", "1.5", "0 to 1"},
+      {HEAD PLACE "\"weights\":[0.5,null]," TIED, "`weights[1]`", "nan", "0 to 1"},
+      {HEAD PLACE "\"weights\":[0.5,0.4]," TIED, "`weights`", "0.9", "must be 1"},
       {HEAD PLACE FIELDS(GOOD "," GOOD "," GOOD "," GOOD "," GOOD "," GOOD "," GOOD "," GOOD
                               "," GOOD),
        "`fields`", "9", "8"},
