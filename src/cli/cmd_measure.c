@@ -336,7 +336,8 @@ static fg_status load_model(fg_context *ctx, measure_run *run) {
   fg_scanner_model_trace(run->model, &run->design);
   if (fg_scanner_model_is_tied(run->model))
     fprintf(stderr,
-            "foilgauge: note: %s: other explanations did as well when the model was found; every "
+            "foilgauge: note: %s: other explanations did as well, or nearly, when the model was "
+            "found; every "
             "u_ is wider by what they would have changed\n",
             path);
   return FG_OK;

@@ -137,16 +137,17 @@ void fg_benefits_add(fg_benefits *benefits, const fg_measurement *before,
   add_discs(&benefits->discs, before, corrected);
 }
 
-static void weigh(fg_benefit *benefit, const double *weight, size_t count) {
+static void weigh(fg_benefit *benefit, const double *weight, size_t count, bool curve) {
   benefit->mean = true;
+  benefit->curve = curve;
   for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
     benefit->weight[e] = e < count ? weight[e] : 0;
 }
 
-void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count) {
+void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve) {
   for (size_t f = 0; f < benefits->foils; f++)
-    weigh(&benefits->foil[f], weight, count);
-  weigh(&benefits->discs, weight, count);
+    weigh(&benefits->foil[f], weight, count, curve);
+  weigh(&benefits->discs, weight, count, curve);
 }
 
 double fg_benefit_weight(const fg_benefit *benefit, size_t explanation) {

@@ -235,13 +235,23 @@ static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_
   return FG_OK;
 }
 
+static bool holds_curve(const fg_field_list *list) {
+  for (size_t f = 0; f < list->count; f++) {
+    const fg_effect *effect = fg_effect_find(list->fields[f].id);
+    if (effect && fg_effect_is_free(effect)) return true;
+  }
+  return false;
+}
+
 fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *model,
                                     const fg_measurement *m, unsigned threads,
                                     fg_model_uncertainty *uncertainty) {
   fg_status status = FG_OK;
   *uncertainty = (fg_model_uncertainty){.model = model};
   FG_TRY_EXIT(fg_benefits_open(ctx, m, &uncertainty->benefits));
-  if (model->weights) fg_benefits_weigh(&uncertainty->benefits, model->weight, model->weights);
+  if (model->weights)
+    fg_benefits_weigh(&uncertainty->benefits, model->weight, model->weights,
+                      holds_curve(&model->fields));
   FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_modes(ctx, model, m, threads, uncertainty));

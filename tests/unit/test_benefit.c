@@ -137,7 +137,7 @@ static void evidence_weighs_explanations(void **state) {
     fg_benefits all = {.discs = benefit};
     fg_benefit_decision decision;
     double move[FG_CORRECTED], moment[FG_CORRECTED][FG_CORRECTED];
-    fg_benefits_weigh(&all, (const double[]){ties[i].weight, 1 - ties[i].weight}, 2);
+    fg_benefits_weigh(&all, (const double[]){ties[i].weight, 1 - ties[i].weight}, 2, false);
     explain(&all.discs, 10, 10, 10);
     explain(&all.discs, 0, 0, 0);
     decide(&all.discs, &decision);
