@@ -200,6 +200,7 @@ const fg_effect fg_effects_curves[] = {
      .coordinate = FG_EFFECT_Y,
      .moves = "x and y",
      .by_evidence = true,
+     .loose = true,
      .columns = 18,
      .glass = over_plane,
      .coarse = FG_EFFECT_WHOLE,

@@ -147,6 +147,8 @@ typedef struct fg_effect {
   double hold; /* weight of a curve's coefficients beside rows of weight FG_EDGE_FIT_BLOCK: of all
                   curves with the same residual the smallest one is chosen */
   bool bends;  /* bumps are no circles with it */
+  bool loose;  /* of so many numbers that a scan leaves some of them open: explains a residual, but
+                  corrects no other scan */
   bool by_evidence; /* not a candidate of the search for sets: evidence alone asks for it */
   bool of_carriage; /* error of the carriage along its travel, the same for all x: the lines of a
                        colour sensor see it at different times */

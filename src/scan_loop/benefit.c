@@ -137,17 +137,19 @@ void fg_benefits_add(fg_benefits *benefits, const fg_measurement *before,
   add_discs(&benefits->discs, before, corrected);
 }
 
-static void weigh(fg_benefit *benefit, const double *weight, size_t count, bool curve) {
+static void weigh(fg_benefit *benefit, const double *weight, size_t count, bool curve, bool loose) {
   benefit->mean = true;
   benefit->curve = curve;
+  benefit->misfit = loose;
   for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
     benefit->weight[e] = e < count ? weight[e] : 0;
 }
 
-void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve) {
+void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve,
+                       bool loose) {
   for (size_t f = 0; f < benefits->foils; f++)
-    weigh(&benefits->foil[f], weight, count, curve);
-  weigh(&benefits->discs, weight, count, curve);
+    weigh(&benefits->foil[f], weight, count, curve, loose);
+  weigh(&benefits->discs, weight, count, curve, loose);
 }
 
 double fg_benefit_weight(const fg_benefit *benefit, size_t explanation) {

@@ -73,9 +73,10 @@ typedef struct fg_benefits {
 fg_status fg_benefits_open(fg_context *ctx, const fg_measurement *before, fg_benefits *benefits);
 void fg_benefits_close(fg_benefits *benefits);
 
-/* Sets the weights that evidence gives the explanations, in the order in which they are added.
- * `curve`: the one in force holds a free curve. */
-void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve);
+/* Sets the weights that evidence gives the explanations, in the order in which they are added, and
+ * what the one in force holds: a free curve, one that is loose. */
+void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve,
+                       bool loose);
 /* Returns the share of one explanation in the mean. */
 double fg_benefit_weight(const fg_benefit *benefit, size_t explanation);
 

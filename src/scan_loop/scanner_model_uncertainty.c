@@ -235,12 +235,14 @@ static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_
   return FG_OK;
 }
 
-static bool holds_curve(const fg_field_list *list) {
-  for (size_t f = 0; f < list->count; f++) {
-    const fg_effect *effect = fg_effect_find(list->fields[f].id);
-    if (effect && fg_effect_is_free(effect)) return true;
+static void weigh(const fg_scanner_model *model, fg_benefits *benefits) {
+  bool curve = false, loose = false;
+  for (size_t f = 0; f < model->fields.count; f++) {
+    const fg_effect *effect = fg_effect_find(model->fields.fields[f].id);
+    curve = curve || (effect && fg_effect_is_free(effect));
+    loose = loose || (effect && effect->loose);
   }
-  return false;
+  fg_benefits_weigh(benefits, model->weight, model->weights, curve, loose);
 }
 
 fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *model,
@@ -249,9 +251,7 @@ fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *mod
   fg_status status = FG_OK;
   *uncertainty = (fg_model_uncertainty){.model = model};
   FG_TRY_EXIT(fg_benefits_open(ctx, m, &uncertainty->benefits));
-  if (model->weights)
-    fg_benefits_weigh(&uncertainty->benefits, model->weight, model->weights,
-                      holds_curve(&model->fields));
+  if (model->weights) weigh(model, &uncertainty->benefits);
   FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, uncertainty));
   FG_TRY_EXIT(step_modes(ctx, model, m, threads, uncertainty));
