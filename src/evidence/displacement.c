@@ -42,8 +42,8 @@ static double *amplitudes_of_effect(const fg_evidence_part *part, fg_displacemen
   const fg_effect *effect =
       part->effect->polynomial ? &fg_effect_powers[part->effect->axis] : part->effect;
   for (size_t e = 0; e < d->effects; e++)
-    if (d->effect[e].effect == effect && d->effect[e].shape[0] == part->shape[0] &&
-        d->effect[e].columns == part->count)
+    if (d->effect[e].effect == effect && d->effect[e].columns == part->count &&
+        !memcmp(d->effect[e].shape, part->shape, sizeof part->shape))
       return d->effect[e].um;
   if (d->effects == FG_DISPLACEMENT_EFFECTS) return NULL;
   memset(&d->effect[d->effects], 0, sizeof d->effect[0]);

@@ -197,7 +197,7 @@ fg_status fg_evidence_fit_effect(fg_context *ctx, fg_evidence_search *s,
   part->first = option->first + found.set * option->each;
   part->log_prior = log(s->request.prior.weight * FG_EVIDENCE_PRIOR) + found.mass;
   if (option->seeded) part->log_prior -= log((double)effect->starts);
-  if (!fg_effect_bears_name(effect)) part->log_prior -= log(FG_UNNAMED_EFFECTS);
+  if (!fg_effect_bears_name(effect)) part->log_prior -= log((double)fg_unnamed_of_kind(effect));
   double reach[FG_FIELD_SHAPES];
   if (option->sets > 1)
     fg_evidence_find_start(s->problem.edge_fit, effect, found.set, part->shape, reach);

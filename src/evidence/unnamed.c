@@ -12,6 +12,8 @@ enum { STARTS = 24, PERIODS = 48, BROKEN_NUMBERS = 3 };
 /* A wave of changing size is wider in frequency than one cycle over the picture. */
 enum { BAND_PERIODS = 24, ENVELOPE = 3, BAND_NUMBERS = 2 * ENVELOPE };
 enum { JOINTS = 40, EVENT_LENGTHS = 3, EVENT_PLACES = 24, EVENT_NUMBERS = 3, JOINT_NUMBERS = 2 };
+enum { PULSE_LENGTHS = 3, PULSE_PLACES = 40 };
+enum { SPOT_STARTS = 96, SPOT_NUMBERS = 2 };
 enum { BURR_WIDTHS = 2, BURR_PLACES = 288, BURR_DISCS_MAX = 20 };
 
 static double start_along(const fg_field_frame *frame, int axis, size_t i, size_t count) {
@@ -168,6 +170,64 @@ static void event_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, doub
 EVENT(x_event_over_y, 1, 0)
 EVENT(y_event_over_y, 0, 1)
 
+/* ---- a pulse: a nudge of the carriage, a flaw of the lens; on one arc it is a dent of the part
+ * ----
+ */
+
+static void pulse_grid(const fg_edge_fit *edge_fit, int axis, size_t i, size_t count, double *shape,
+                       double *reach) {
+  static const double lengths[PULSE_LENGTHS] = {0.4, 0.9, 2};
+  const fg_field_frame *frame = &edge_fit->frame;
+  size_t places = count / PULSE_LENGTHS;
+  shape[0] = start_along(frame, axis, i / PULSE_LENGTHS, places);
+  shape[1] = lengths[i % PULSE_LENGTHS];
+  reach[0] = span_along(frame, axis) / (double)(places + 1);
+  reach[1] = 0.5 * shape[1];
+}
+
+static void pulse_grid_x(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
+                         double *reach) {
+  pulse_grid(edge_fit, 0, i, count, shape, reach);
+}
+
+static void pulse_grid_y(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
+                         double *reach) {
+  pulse_grid(edge_fit, 1, i, count, shape, reach);
+}
+
+#define PULSE(name, over, moved_x, moved_y)                                                        \
+  static void name(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {   \
+    double u = (fg_point_along(at, over) - shape[0]) / shape[1], value = exp(-0.5 * u * u);        \
+    (void)frame;                                                                                   \
+    d[0] = (fg_point){(moved_x)*value, (moved_y)*value};                                           \
+  }
+PULSE(x_pulse_over_x, 0, 1, 0)
+PULSE(y_pulse_over_x, 0, 0, 1)
+PULSE(x_pulse_over_y, 1, 1, 0)
+PULSE(y_pulse_over_y, 1, 0, 1)
+
+/* ---- a flaw of the glass at one place of the edges, which are all that shows it ---- */
+
+static void spot_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
+                      double *reach) {
+  const double step_mm = 0.5;
+  size_t row = (size_t)(((double)i + 0.5) / (double)count * (double)edge_fit->row_count);
+  shape[0] = edge_fit->rows[row].ideal.x;
+  shape[1] = edge_fit->rows[row].ideal.y;
+  reach[0] = reach[1] = step_mm;
+}
+
+#define SPOT(name, width_mm)                                                                       \
+  static void name(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {   \
+    double u = (at.x - shape[0]) / (width_mm), v = (at.y - shape[1]) / (width_mm);                 \
+    double value = exp(-0.5 * (u * u + v * v));                                                    \
+    (void)frame;                                                                                   \
+    d[0] = (fg_point){value, 0};                                                                   \
+    d[1] = (fg_point){0, value};                                                                   \
+  }
+SPOT(small_spot, 0.5)
+SPOT(large_spot, 1.2)
+
 /* ---- a strip that is joined from two pieces: another slope and level behind one place ---- */
 
 static void joint_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
@@ -233,6 +293,26 @@ static size_t burr_of_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *r
     }                                                                                              \
   }
 
+#define PULSE_ROW(name, over, thing, basis, from)                                                  \
+  {                                                                                                \
+    .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
+    .moves = thing, .columns = 1, .shapes = 2, .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_LENGTH},    \
+    .glass = basis, .axis = over, .grid = from, .starts = PULSE_LENGTHS * PULSE_PLACES,            \
+    .size_from = "as of a lost row; assumed", .size_um = {                                         \
+      15                                                                                           \
+    }                                                                                              \
+  }
+
+#define SPOT_ROW(name, basis)                                                                      \
+  {                                                                                                \
+    .id = name, .sought = FG_EFFECT_PLACED, .coordinate = FG_EFFECT_Y, .moves = "x and y",         \
+    .columns = SPOT_NUMBERS, .shapes = 2, .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_PLACE},          \
+    .glass = basis, .axis = 1, .grid = spot_grid, .starts = SPOT_STARTS,                           \
+    .size_from = "as of a lost row; assumed", .size_um = {                                         \
+      15                                                                                           \
+    }                                                                                              \
+  }
+
 #define LENGTH_ROW(name, over, thing, basis, count, from, tried)                                   \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
@@ -270,6 +350,12 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
     BAND_ROW("scan.y.dy as a wave of changing size", 1, "y", y_band_over_y, band_in_y),
     EVENT_ROW("scan.y.dx as an event", "x", x_event_over_y),
     EVENT_ROW("scan.y.dy as an event", "y", y_event_over_y),
+    PULSE_ROW("scan.x.dx as a pulse", 0, "x", x_pulse_over_x, pulse_grid_x),
+    PULSE_ROW("scan.x.dy as a pulse", 0, "y", y_pulse_over_x, pulse_grid_x),
+    PULSE_ROW("scan.y.dx as a pulse", 1, "x", x_pulse_over_y, pulse_grid_y),
+    PULSE_ROW("scan.y.dy as a pulse", 1, "y", y_pulse_over_y, pulse_grid_y),
+    SPOT_ROW("scan.xy at a small place", small_spot),
+    SPOT_ROW("scan.xy at a large place", large_spot),
     {.id = "foil.s with a jump",
      .sought = FG_EFFECT_PLACED,
      .coordinate = FG_EFFECT_FOIL,
@@ -303,11 +389,25 @@ static bool is_broken_across(const fg_effect *effect) {
   return effect->columns == BROKEN_NUMBERS && !effect->grid && over_x == moves_y;
 }
 
+/* Returns true for a pulse or a spot: on one arc a dent is as likely, which discs have as a form.
+ */
+static bool is_of_one_place(const fg_effect *effect) {
+  return effect->grid == pulse_grid_x || effect->grid == pulse_grid_y || effect->grid == spot_grid;
+}
+
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
   if (effect->midline == burr_of_disc)
     return edge_fit->discs && edge_fit->part_count <= BURR_DISCS_MAX;
   if (!edge_fit->discs) return true;
+  if (is_of_one_place(effect)) return false;
   return effect->jumps ? is_broken_across(effect) : effect->columns != BAND_NUMBERS;
+}
+
+size_t fg_unnamed_of_kind(const fg_effect *effect) {
+  size_t count = 0;
+  for (const fg_effect *one = fg_unnamed_effects; one->id; one++)
+    count += is_of_one_place(one) == is_of_one_place(effect);
+  return count;
 }
 
 bool fg_effect_bears_name(const fg_effect *effect) {

@@ -12,14 +12,17 @@
 
 #include "effect/effect.h"
 
-/* The rows, in the form of effects, which no report names; NULL-terminated by id. They are of one
- * kind and share one prior probability. */
-enum { FG_UNNAMED_EFFECTS = 18 };
+/* The rows, in the form of effects, which no report names; NULL-terminated by id. */
+enum { FG_UNNAMED_EFFECTS = 24 };
 extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
 
 /* Returns false on discs for lines that are broken along their own way: there a slope and a jump
  * are seen apart, and both have names. Tilted chips break them across it, which no name has. */
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit);
+
+/* Returns the number of rows of its kind, which share one prior probability: faults at one place of
+ * the picture are a kind, the others are one. */
+size_t fg_unnamed_of_kind(const fg_effect *effect);
 
 /* False for one of those that nobody has named, and for NULL: a rival has no effect. */
 bool fg_effect_bears_name(const fg_effect *effect);

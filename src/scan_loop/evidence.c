@@ -180,8 +180,8 @@ static fg_status drop_nothings(fg_context *ctx, fg_scan_loop *loop) {
   return status;
 }
 
-/* Fits the likeliest explanation. FG_ERR_NUMERIC where it cannot be fitted: the one before stays.
- */
+/* Fits the likeliest explanation. FG_ERR_NUMERIC where it cannot be fitted, or one effect alone is
+ * nothing then: the one before stays. */
 static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_set *set) {
   size_t numbers = fg_edge_fit_geometry_size(&loop->edge_fit);
   double *geometry = NULL;
@@ -191,6 +191,7 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   /* Beside known radii more is left; no effect at all leaves the same, but for its last digits. */
   bool comparable = set->count && !fg_effect_set_scales(set);
   if (status == FG_OK && comparable && !has_converged(loop)) status = FG_ERR_NUMERIC;
+  if (status == FG_OK && set->count == 1 && is_nothing(&set->effects[0])) status = FG_ERR_NUMERIC;
   if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
     fg_status before = fit_set(ctx, loop, &loop->set);

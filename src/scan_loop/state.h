@@ -73,7 +73,7 @@ fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurement
 /* Marks foils that are not of the design as not measured, and counts them. FG_ERR_NOT_MEASURED when
  * no foil is left. */
 fg_status fg_scan_loop_leave_out(fg_context *ctx, fg_scan_loop *loop);
-/* Adds a note for each foil left out. */
+/* Adds a note for each foil left out, and for each stretch of the others that no fit holds. */
 fg_status fg_scan_loop_say_left_out(fg_context *ctx, fg_scan_loop *loop);
 
 /* Weighs the search's explanation against all named effects and all rivals by their evidence. */

@@ -17,4 +17,11 @@ SPEC
 "$program" loop rough.png -o rough.out || fail "loop on a rough foil"
 [ "$(value rough.out "r['verdict'], r['claims'], r['unattributed']")" = "('clean', [], None)" ] ||
   fail "a foil without an effect is $(value rough.out "r['verdict']")"
+[ "$(value rough.out "[n for n in r['notes'] if 'in no fit' in n]")" = "[]" ] || fail "a fillet of a rough foil is told as a crease"
+
+# A crease of a land passes for its fillets: no fit holds it, and the report says so beside its verdict.
+render_foil creased 5 -70 '{"id":"part.dent","amplitude_um":20,"place_deg":6.6,"width_deg":0.35,"along":"normal"}' 2400
+"$program" loop creased.png -o creased.out || fail "loop on a creased foil"
+[ "$(value creased.out "[n[:34] for n in r['notes'] if 'in no fit' in n]")" = "['creased.png foil 1: beside bump 5 ']" ] ||
+  fail "nothing says that the foil is creased: $(value creased.out "r['notes']")"
 exit $failed

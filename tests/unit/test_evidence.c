@@ -150,6 +150,22 @@ static void one_cause_is_not_cut_into_named_pieces(void **state) {
   }
 }
 
+/* On one arc a fault at one place of the picture and a dent are alike. */
+static void a_fault_at_one_place_is_no_dent(void **state) {
+  (void)state;
+  static const char *id[] = {"scan.x.dy as a pulse", "scan.xy at a small place",
+                             "scan.xy at a large place"};
+  static const size_t start[] = {58, 40, 40};
+  static const double um[][2] = {{4}, {3, 3}, {3, 3}};
+  for (int k = 0; k < 3; k++) {
+    char names[1000] = "";
+    fg_evidence_verdict v;
+    decide_on(unnamed(id[k]), start[k], um[k], &v, names, sizeof names);
+    if (v.outcome == FG_EVIDENCE_CLEAN || v.outcome == FG_EVIDENCE_FOUND || !strstr(names, "scan."))
+      fail_msg("%s: outcome %d, %s", id[k], (int)v.outcome, names);
+  }
+}
+
 /* A model of a search that is written by hand: rivals by their place in the table. */
 static void put_model(fg_evidence_search *s, fg_evidence_part *part, double score,
                       const char *names) {
@@ -315,6 +331,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lands_that_deviate_alike_are_of_the_part),
       cmocka_unit_test(one_cause_is_not_cut_into_named_pieces),
+      cmocka_unit_test(a_fault_at_one_place_is_no_dent),
       cmocka_unit_test(a_pair_leads_of_which_neither_leads_alone),
       cmocka_unit_test(a_name_beside_what_has_none_must_gain_more_than_the_columns_err),
       cmocka_unit_test(a_jump_stays_beside_fields_where_none_does_without_it),
