@@ -8,7 +8,9 @@
 /* A scan with foils of the lot; of a bed's foils some may be of other lots. */
 typedef struct fg_lot_scan {
   int64_t id;
-  char *path; /* below the station's folder, as stored (stored_name.h) */
+  /* Below the station's folder, as stored (stored_name.h). A scan whose file another scan has
+   * replaced gets a name that no file has. */
+  char *path;
   char sha256[65];
   size_t of; /* foils of the scan, whatever lot they belong to */
   int *numbers;

@@ -70,6 +70,27 @@ grep -q 'bed.png,bed.1,L 1,,,1 of 2$' "$work/beds/L 1/manifest.csv" || fail "$(c
 [ "$(wc -l <"$work/beds/L 1/foils.csv")" -eq 4 ] || fail "a bed's foil of another lot is in the lot"
 "$program" merge "$work/beds/L 1" -o "$work/merged2" 2>/dev/null || fail "a part of a bed does not merge"
 
+# A scanner that always writes the same name: every scan counts, and a replaced one is not taken for its successor.
+mkdir "$work/same"
+for seed in 21 22 23; do
+  draw $seed "$work/same/L-x.png"
+  "$program" station "$work/same" --recipe "$work/recipe.json" --once 2>/dev/null
+done
+cp "$work/same/L-x.png" "$work/third.png"
+draw 22 "$work/same/L-x.png"
+"$program" station "$work/same" --recipe "$work/recipe.json" --once 2>/dev/null
+"$program" station "$work/same" --recipe "$work/recipe.json" --export "$work/same_out" 2>"$work/said" ||
+  fail "--export of replaced scans: $(cat "$work/said")"
+said "$work/said" "same_out/L 3 foils of 3 scans: 3 pass" "replaced scans"
+checks - "$work/same_out/L/manifest.csv" "$work/third.png" <<'PY' || fail "the names of replaced scans"
+import csv, hashlib, os, sys
+names = [row["scan"] for row in csv.DictReader(open(sys.argv[1]))]
+assert [os.path.exists(name) for name in names] == [False, True, False], names
+assert len(set(names)) == 3, names
+third = hashlib.sha256(open(sys.argv[2], "rb").read()).hexdigest()
+assert names[2].endswith("L-x.png.overwritten-" + third[:12]), names
+PY
+
 # Another setup: measured again with the lot's newest; scans that are gone count as not measured.
 sed 's/"group/"dpi": 1201, "group/' "$work/recipe.json" >"$work/other.json"
 cp "$work/drawn/late.png" "$work/in/L 1-late.png"
