@@ -158,7 +158,8 @@ static void write_caption(const page *p) {
             "foil to the next (σ %.4g).",
             trend->quantity.chart.sigma);
   if (tolerance)
-    fprintf(p->out, " Red: beyond the tolerance of the design (%s).",
+    fprintf(p->out, " Red: beyond the tolerance of the %s (%s).",
+            trend->mixed ? "newest foil's recipe" : "design",
             p->choice->owner == FG_QUANTITY_OF_BUMP && !p->choice->bump
                 ? "which each bump must keep; the chart is of means"
                 : "a limit that is far off is not drawn");

@@ -136,12 +136,6 @@ static fg_status chart_lots(unsigned rules, fg_trend *trend) {
   return FG_OK;
 }
 
-static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quantity *row) {
-  for (size_t i = 0; i < design->tolerance_count; i++)
-    if (!strcmp(design->tolerances[i].quantity, row->name)) return &design->tolerances[i];
-  return NULL;
-}
-
 /* Judges capability; too few values have none, which is no error. */
 static void judge_trend(const fg_lot_settings *settings, size_t points, fg_lot_quantity *quantity) {
   fg_context unused;
@@ -181,6 +175,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
   FG_TRY(read_values(ctx, reader, trend));
   choose_points(trend);
   find_trend_spread(&trend->quantity);
+  FG_TRY(fg_trend_find_tolerance(ctx, reader, trend));
   if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);
   if (!trend->count) return FG_OK;
   FG_TRY(find_shifts(ctx, request, reader, trend));
@@ -198,10 +193,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
 fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                         const fg_trend_choice *choice, fg_trend *trend) {
   const fg_lot_settings *settings = &station->settings->lot;
-  *trend = (fg_trend){.choice = choice,
-                      .quantity = {.row = choice->row,
-                                   .owner = choice->owner,
-                                   .tolerance = find_tolerance(&settings->design, choice->row)}};
+  *trend = (fg_trend){.choice = choice, .quantity = {.row = choice->row, .owner = choice->owner}};
   fg_status status = read_and_chart(ctx, station->request, settings, reader, trend);
   if (status != FG_OK) fg_trend_free(trend);
   return status;

@@ -6,9 +6,9 @@
 name=test_station_orders
 . "$(dirname "$0")/../support/station.sh"
 mkdir "$work/scans" "$work/erp"
-for seed in 1 2 3 4 5 6 7 8; do
+for seed in 1 2 3 4 5 6 7 8 9 10; do
   radius=3.32
-  case $seed in 2 | 6 | 7 | 8) radius=3.4 ;; esac
+  case $seed in 2 | 6 | 7 | 8 | 9) radius=3.4 ;; 10) radius=3.39 ;; esac
   printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90,
     "design": {"bump_count": 2, "bump_radius_mm": %s}}]}' "$seed" "$radius" >"$work/spec.json"
   "$renderer" render "$work/spec.json" -o "$work/$seed.png"
@@ -110,5 +110,19 @@ assert [row[:2] for row in judged] == [("G1", "pass"), ("G2", "fail")] and judge
 post("/close", lot="L10", by="Ada")
 wait_until(lambda: os.path.exists(work + "/scans/lots/L10/lot.json"))
 assert "3.42" in open(work + "/scans/lots/L10/lot.json").read()
+# A chart has the tolerance of its foils' recipe, not the station's.
+post("/order", number="W2", part="wide", lot="L11")
+drop(9, "H1")
+drop(10, "H2")
+page = get("/trends?q=bump:radius_mm&lot=L11")
+assert re.search(r"max 3\.420*<", page) and re.search(r"min 3\.380*<", page), re.findall("(?:max|min) 3[^<]*", page)
+assert "tolerance of the design" in page
+page = get("/trends?q=bump:radius_mm")
+assert "tolerance of the newest foil&#39;s recipe" in page or "tolerance of the newest foil's recipe" in page, page
+
+# The clock is set back: the order opened last is in force all the same.
+database.execute("UPDATE orders SET opened_at = opened_at + 86400000 WHERE number = 'W2'"), database.commit()
+post("/order", number="N1", lot="L12")
+assert "Order N1</a>: <b>0</b>" in get("/"), get("/")
 print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY
