@@ -56,12 +56,15 @@ static const char of_all[] = "SELECT measured.foil, measured.foil, value FROM me
 static const char of_named[] =
     "SELECT measured.foil, measured.foil, value FROM measured JOIN foils ON foils.id ="
     " measured.foil WHERE" CHOSEN " AND" NAMED " ORDER BY measured.foil, bump";
-/* A lot's values are the means of its foils; lots come in the order of their first foil. */
+/* A lot's values are the means of its foils, of all scans that show a foil: it was made once. Lots
+ * come in the order of their first foil. */
 static const char of_lots[] =
     "WITH mean AS (SELECT measured.foil AS foil, avg(value) AS value FROM measured WHERE" CHOSEN
     " GROUP BY measured.foil), first AS (SELECT lot, min(id) AS id FROM foils GROUP BY lot)"
-    " SELECT first.id, first.id, mean.value FROM mean JOIN foils ON foils.id = mean.foil"
-    " JOIN first ON first.lot = foils.lot WHERE" NAMED " ORDER BY first.id, mean.foil";
+    " SELECT first.id, first.id, avg(mean.value) FROM mean JOIN foils ON foils.id = mean.foil"
+    " JOIN first ON first.lot = foils.lot WHERE" NAMED
+    " GROUP BY first.id, CASE foils.serial WHEN '' THEN mean.foil ELSE foils.serial END"
+    " ORDER BY first.id, min(mean.foil)";
 
 static fg_status read_values(fg_context *ctx, sqlite3 *reader, fg_trend *trend) {
   const fg_trend_choice *choice = trend->choice;

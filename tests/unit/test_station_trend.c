@@ -270,6 +270,30 @@ static void lots_dies_and_single_bumps_are_chosen(void **state) {
   get(f, "/trends", "q=bump:centre_mm", 404);
 }
 
+/* Scans of one foil say little of how foils vary, and do not narrow the limits of lots. */
+static void a_foil_counts_once_in_its_lot(void **state) {
+  fixture *f = *state;
+  char once[80];
+  for (int lot = 0; lot < 5; lot++)
+    add_foils(f, 1 + 4 * lot, 4 + 4 * lot, (const char *[]){"L1", "L2", "L3", "L4", "L5"}[lot],
+              3.4);
+  const char *page = get(f, "/trends", "by=lots", 200), *sigma = strstr(page, "(σ ");
+  assert_non_null(sigma);
+  snprintf(once, sizeof once, "%.*s", (int)strcspn(sigma, ")"), sigma);
+  for (int again = 1000; again <= 4000; again += 1000)
+    run_sql(f,
+            "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) SELECT id + %d,"
+            " sha256 || '-%d', setup, path, source, at, verdict FROM scans WHERE id <= 20;"
+            "INSERT INTO foils SELECT id + %d, scan + %d, number, serial, lot, die, operator,"
+            " verdict, reasons, coil, oven, scanner, order_id FROM foils WHERE id <= 20;"
+            "INSERT INTO measured SELECT quantity, foil + %d, bump, value, u FROM measured"
+            " WHERE foil <= 20",
+            again, again, again, again, again);
+  page = get(f, "/trends", "by=lots", 200);
+  assert_has(page, once);
+  assert_has(page, "5 lots, from L1 (no. 1)");
+}
+
 static void names_cannot_write_the_page(void **state) {
   fixture *f = *state;
   add_foils(f, 1, 3, "<script>&\"", 3.4);
@@ -447,6 +471,7 @@ int main(void) {
       TEST(zooming_moves_no_limit_unless_asked_to),
       TEST(many_points_are_thinned_out_and_none_that_stands_out),
       TEST(lots_dies_and_single_bumps_are_chosen),
+      TEST(a_foil_counts_once_in_its_lot),
       TEST(names_cannot_write_the_page),
       TEST(a_check_is_due_and_done_and_due_again),
       TEST(a_changed_picture_withholds_until_it_is_accepted),
