@@ -223,7 +223,7 @@ fg_status fg_action_order(fg_context *ctx, fg_inspection *station, const fg_requ
     ask_for_fields(number, answer);
     return FG_OK;
   }
-  strcpy(order.number, number);
+  if (!known) strcpy(order.number, number);
   FG_TRY(fg_station_database_begin(ctx, &station->database));
   FG_TRY(fg_station_database_end(ctx, &station->database,
                                  keep_order(ctx, station->database.writer, &order)));

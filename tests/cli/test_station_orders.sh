@@ -14,6 +14,10 @@ for seed in 1 2 3 4 5 6 7 8 9 10; do
   "$renderer" render "$work/spec.json" -o "$work/$seed.png"
 done
 printf 'Order;Batch;Tool;Material;Quantity\n4711;L7;B;K7;40\n4712;L8;A;K8;2\n' >"$work/erp/today.csv"
+# Numbers of things are no numbers; a later file's row counts.
+printf 'Order;Batch;Tool;Material;Quantity\n000815;old;B;K7;40\n1e3;L13;B;K7;4\n' >"$work/erp/a.csv"
+touch -d '1 hour ago' "$work/erp/a.csv"
+printf 'Order;Batch;Tool;Material;Quantity\n000815;00012;01;007;5\n4500012345678901234;1,5;B;K7;4\n' >"$work/erp/b.csv"
 printf 'not a table' >"$work/erp/readme.txt"
 cat >"$work/recipe.json" <<R
 {"schema": "foilgauge/recipe/1",
@@ -124,5 +128,12 @@ assert "tolerance of the newest foil&#39;s recipe" in page or "tolerance of the 
 database.execute("UPDATE orders SET opened_at = opened_at + 86400000 WHERE number = 'W2'"), database.commit()
 post("/order", number="N1", lot="L12")
 assert "Order N1</a>: <b>0</b>" in get("/"), get("/")
+def opened(number):
+    post("/order", number=number)
+    return database.execute("SELECT number, lot, die, coil, pieces FROM orders ORDER BY opened_at DESC").fetchone()
+assert opened("000815") == ("000815", "00012", "01", "007", 5), opened("000815")
+assert opened("1e3") == ("1e3", "L13", "B", "K7", 4)
+assert opened("815") == ("000815", "00012", "01", "007", 5), opened("815")
+assert opened("4500012345678901234") == ("4500012345678901234", "1,5", "B", "K7", 4)
 print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY
