@@ -30,7 +30,7 @@ sed 's/"min": 3.3, "max": 3.34/"min": 3.38, "max": 3.42/; /"station"/,/"parts"/d
 "$program" station "$work/scans" --recipe "$work/recipe.json" --orders "$work/erp" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
 checks - "$work" >&2 <<'PY' || fail "orders: $(cat "$work/err")"
-import os, re, shutil, sqlite3, sys, urllib.error, urllib.parse, urllib.request
+import csv, os, re, shutil, sqlite3, sys, urllib.error, urllib.parse, urllib.request
 work = sys.argv[1]
 base = wait_until(lambda: open(work + "/address").read().strip())
 def get(path):
@@ -135,5 +135,12 @@ assert opened("000815") == ("000815", "00012", "01", "007", 5), opened("000815")
 assert opened("1e3") == ("1e3", "L13", "B", "K7", 4)
 assert opened("815") == ("000815", "00012", "01", "007", 5), opened("815")
 assert opened("4500012345678901234") == ("4500012345678901234", "1,5", "B", "K7", 4)
+
+# Coil and order of a foil are in its lot's files.
+post("/close", lot="L7", by="Ada")
+wait_until(lambda: os.path.exists(work + "/scans/lots/L7/lot.json"))
+rows = list(csv.DictReader(open(work + "/scans/lots/L7/foils.csv")))
+assert rows and all((row["die"], row["coil"], row["order"]) == ("B", "K7", "4711") for row in rows), rows
+assert "coil" not in open(work + "/scans/lots/L9/manifest.csv").readline()
 print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY
