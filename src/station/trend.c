@@ -234,12 +234,6 @@ void fg_trend_name(sqlite3 *reader, const fg_trend *trend, size_t point, char *n
   fg_query_end(&unused, &query, "reading a name");
 }
 
-/* Returns the number of points that a rule covers (control.h). */
-static size_t rule_length(unsigned rule) {
-  static const size_t lengths[FG_RUN_RULES] = {1, 9, 6, 14, 3, 5, 15, 8};
-  return lengths[rule - 1];
-}
-
 static void add_run(fg_trend_run runs[FG_TREND_RUNS], size_t *all, fg_trend_run run) {
   if (*all < FG_TREND_RUNS) runs[*all] = run;
   ++*all;
@@ -258,7 +252,7 @@ size_t fg_trend_runs(const fg_trend *trend, fg_trend_run runs[FG_TREND_RUNS], si
       size_t begin = i;
       while (begin > 0 && chart->point[begin - 1].rules & bit)
         begin--;
-      size_t length = rule_length(rule);
+      size_t length = fg_run_rule_length(rule);
       add_run(runs, all,
               (fg_trend_run){rule, begin + 1 > length ? begin + 1 - length : 0, i, *all + 1});
     }
