@@ -158,7 +158,7 @@ PY
 # A foil that comes too late is said, on its card and beside the lot.
 draw 6 "$work/in/L 1-late2.png"
 checks - "$work" >&2 <<'PY' || fail "late: $(cat "$work/err")"
-import re, sys, time, urllib.parse, urllib.request
+import os, re, sys, time, urllib.parse, urllib.request
 base = open(sys.argv[1] + "/address").read().strip()
 get = lambda path: plain(urllib.request.urlopen(base + path).read().decode())
 # The page names the file from its arrival on, its foil when it is measured.
@@ -166,11 +166,21 @@ wait_until(lambda: "comes after its lot &#39;L 1&#39; was closed by Ann" in get(
 lots = get("lots")
 assert "been corrected since" in lots, lots
 form = re.search('name="form" value="([0-9a-f]+)"', lots)[1]
+# A report that cannot be written leaves that of before.
+before = get("lot?name=L%201")
+blocked = sys.argv[1] + "/in/lots/.closing/L 1/results.jsonl"
+os.makedirs(blocked)
+urllib.request.urlopen(base + "close", urllib.parse.urlencode(dict(form=form, lot="L 1", by="Cem")).encode()).read()
+wait_until(lambda: "being closed" not in get("lots"))
+assert "could not be closed" in get("lots") and "by Cem" not in get("lots"), get("lots")
+assert get("lot?name=L%201") == before
+os.rmdir(blocked)
 fields = urllib.parse.urlencode(dict(form=form, lot="L 1", by="Bob")).encode()
 urllib.request.urlopen(base + "close", fields).read()
 wait_until(lambda: "being closed" not in get("lots"))
 lots = get("lots")
 assert "been corrected since" not in lots and "by Bob" in lots and ", 1 time before" in lots, lots
+assert get("lot?name=L%201") != before and not os.path.exists(sys.argv[1] + "/in/lots/.closing")
 PY
 kill "$station"
 wait "$station" 2>/dev/null || true
