@@ -61,6 +61,14 @@ fg_status fg_chart_subgroups(fg_context *ctx, const double *values, const size_t
 
 void fg_chart_free(fg_chart *chart);
 
+/* Expected number of points with a signal on a chart of `count` independent normal values of a
+ * steady process with known limits, by these rules. A point with two rules counts twice, so it is a
+ * few percent too large. */
+double fg_chart_chance_signals(size_t count, unsigned rules);
+
+/* The number of points that a rule covers, 1 to FG_RUN_RULES. */
+size_t fg_run_rule_length(unsigned rule);
+
 /* The rule in words, 1 to FG_RUN_RULES. */
 const char *fg_run_rule_words(unsigned rule);
 

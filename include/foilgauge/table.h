@@ -73,6 +73,10 @@ fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, 
  * hexadecimal. FG_ERR_IO, and as fg_table_parse. */
 fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char sha256[65]);
 
+/* As fg_table_load, of names and numbers of things: every cell is a word as it is written (000471,
+ * 1e3, NA), without the spaces around it; an empty one is missing. */
+fg_status fg_table_load_words(fg_context *ctx, const char *path, fg_table *table, char sha256[65]);
+
 /* Builds a table in memory: start from {0}, add columns of equal length. FG_ERR_USAGE for an
  * existing name or another number of rows. Values that are not finite count as missing. */
 fg_status fg_table_add_numbers(fg_context *ctx, fg_table *table, const char *name,

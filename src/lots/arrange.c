@@ -112,16 +112,16 @@ static void scale_stat(fg_index_lot *lot, fg_index_stat *stat, fg_index_scale sc
       scale == FG_INDEX_OVER_DESIGN ? 1 / stat->row->nominal(&lot->design, &lot->nominal) : 1;
   double *values[] = {&stat->mean, &stat->sd,  &stat->median, &stat->mode,
                       &stat->min,  &stat->max, &stat->lower,  &stat->upper};
-  double sum = 0, squares = 0;
+  double sum = 0, squares = 0, first = NAN; /* equal values have a mean that is theirs to the bit */
   for (size_t i = 0; i < sizeof values / sizeof *values; i++)
     *values[i] *= by;
   for (size_t i = 0; i < lot->foil_count; i++) {
     stat->foil[i] *= by;
     if (!isfinite(stat->foil[i])) continue;
-    stat->foils++;
-    sum += stat->foil[i];
+    if (!stat->foils++) first = stat->foil[i];
+    sum += stat->foil[i] - first;
   }
-  stat->foil_mean = sum / (double)stat->foils;
+  stat->foil_mean = first + sum / (double)stat->foils;
   for (size_t i = 0; i < lot->foil_count; i++)
     if (isfinite(stat->foil[i]))
       squares += (stat->foil[i] - stat->foil_mean) * (stat->foil[i] - stat->foil_mean);

@@ -166,20 +166,30 @@ static bool is_backup(const char *name) {
          !strcmp(name + length - after, name_after) && strspn(name + before, "0123456789-") == 15;
 }
 
+/* Returns the time in the name, by this machine's clock: that of a NAS may differ. */
+static time_t time_of_backup(const char *name) {
+  struct tm at = {.tm_isdst = -1};
+  if (sscanf(name + sizeof name_before - 1, "%4d%2d%2d-%2d%2d%2d", &at.tm_year, &at.tm_mon,
+             &at.tm_mday, &at.tm_hour, &at.tm_min, &at.tm_sec) != 6)
+    return 0;
+  at.tm_year -= 1900;
+  at.tm_mon--;
+  return mktime(&at);
+}
+
 /* Finds the time of the newest backup (0: none) and removes those that are too old, but not the
- * newest. */
+ * newest. One of the future was made before the clock was set back: its age is unknown. */
 static time_t inspect_folder(const fg_station_backup *settings) {
   time_t newest = 0, now = time(NULL);
   for (int pass = 0; pass < 2; pass++) {
     DIR *folder = opendir(settings->folder);
     if (!folder) return newest;
     for (struct dirent *entry; (entry = readdir(folder));) {
-      struct stat file;
-      if (!is_backup(entry->d_name) || fstatat(dirfd(folder), entry->d_name, &file, 0) != 0)
-        continue;
-      if (file.st_mtime > newest) newest = file.st_mtime;
-      if (pass && settings->keep_days > 0 && file.st_mtime < newest &&
-          difftime(now, file.st_mtime) > settings->keep_days * DAY_S)
+      if (!is_backup(entry->d_name)) continue;
+      time_t made = time_of_backup(entry->d_name);
+      if (made > newest && difftime(made, now) < HOUR_S) newest = made;
+      if (pass && settings->keep_days > 0 && made < newest &&
+          difftime(now, made) > settings->keep_days * DAY_S)
         unlinkat(dirfd(folder), entry->d_name, 0);
     }
     closedir(folder);

@@ -45,11 +45,17 @@ static fg_status keep_lot(fg_context *ctx, fg_station_database *database, const 
 }
 
 static fg_status close_lot(fg_context *ctx, fg_inspection *station) {
-  char *folder;
+  char *folder, *staged = NULL;
   fg_exported_lot exported;
   const fg_closing *closing = &station->closing;
-  FG_TRY(fg_lot_folder_find(ctx, station->request->folder, closing->lot, true, &folder));
-  fg_status status = fg_station_export_lot(ctx, station, closing->lot, folder, &exported);
+  const char *below = station->request->folder;
+  FG_TRY(fg_lot_folder_find(ctx, below, closing->lot, true, &folder));
+  fg_status status = fg_lot_folder_stage(ctx, below, closing->lot, &staged);
+  if (status == FG_OK)
+    status = fg_station_export_lot(ctx, station, closing->lot, staged, &exported);
+  if (status == FG_OK) status = fg_lot_folder_publish(ctx, staged, folder);
+  if (staged) fg_lot_folder_unstage(staged);
+  free(staged);
   free(folder);
   FG_TRY(status);
   return keep_lot(ctx, &station->database, closing, &exported);

@@ -15,7 +15,13 @@
 #include "station/trend.h"
 #include "station/why.h"
 
-enum { NEWEST_POINTS = 200, RUNS_SHOWN = 3, MS_OF_DAY = 86400000, LINE = 2400 };
+enum {
+  NEWEST_POINTS = 200,
+  RUNS_SHOWN = 3,
+  MS_OF_DAY = 86400000,
+  MS_OF_HOUR = 3600000,
+  LINE = 2400
+};
 
 typedef struct digest {
   const fg_station_request *request;
@@ -26,6 +32,13 @@ typedef struct digest {
   bool in_list;
   int64_t until; /* time of the newest scan: the last day ends with it */
 } digest;
+
+/* Binds the last day. Scans of a later time came before the clock was set back; by up to an hour
+ * they count. */
+static void bind_day(const digest *d, fg_query *query) {
+  fg_query_integer(query, d->until - MS_OF_DAY);
+  fg_query_integer(query, d->until + MS_OF_HOUR);
+}
 
 static void end_list(digest *d) {
   if (d->page && d->in_list) fputs("</ul>\n", d->page);
@@ -57,9 +70,9 @@ static fg_status write_counts(fg_context *ctx, digest *d) {
   size_t total = 0;
   fg_query_begin(d->reader,
                  "SELECT foils.verdict, count(*) FROM foils JOIN scans ON scans.id = scan WHERE at"
-                 " > ? GROUP BY 1 ORDER BY 2 DESC",
+                 " > ? AND at <= ? GROUP BY 1 ORDER BY 2 DESC",
                  &query);
-  fg_query_integer(&query, d->until - MS_OF_DAY);
+  bind_day(d, &query);
   while (fg_query_row(&query)) {
     size_t length = strlen(line);
     fg_text_clip(line + length, sizeof line - length, "%s%lld %s", length ? ", " : "",
@@ -85,11 +98,11 @@ static fg_status write_new_levels(fg_context *ctx, digest *d) {
     char *sql = NULL, line[LINE];
     FG_TRY(fg_text_print(ctx, &sql,
                          "SELECT %s, min(at), serial FROM foils JOIN scans ON scans.id = scan WHERE"
-                         " %s <> '' GROUP BY 1 HAVING min(at) > ? ORDER BY 2",
+                         " %s <> '' GROUP BY 1 HAVING min(at) > ? AND min(at) <= ? ORDER BY 2",
                          columns[c], columns[c]));
     fg_query_begin(d->reader, sql, &query);
     free(sql);
-    fg_query_integer(&query, d->until - MS_OF_DAY);
+    bind_day(d, &query);
     while (fg_query_row(&query)) {
       char day[FG_DATE_TEXT];
       fg_date_format(fg_cause_days(fg_query_get_integer(&query, 1)), day);
@@ -207,9 +220,10 @@ static fg_status write_quantities_of_design(fg_context *ctx, digest *d) {
   return write_quantity(ctx, d, &choice);
 }
 
+/* The newest scan is the last that came, whatever the clock said before. */
 static fg_status find_newest(fg_context *ctx, digest *d) {
   fg_query query;
-  fg_query_begin(d->reader, "SELECT max(at) FROM scans", &query);
+  fg_query_begin(d->reader, "SELECT at FROM scans ORDER BY id DESC LIMIT 1", &query);
   d->until = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
   return fg_query_end(ctx, &query, "reading the scans");
 }

@@ -90,17 +90,22 @@ static fg_status use_setup(fg_context *ctx, export *at, const char *lot, const c
 
 enum { SCAN, FOIL, LOT, DIE, OPERATOR, COLUMNS };
 
-static const char of_scan[] = "foils_of_scan", disposition[] = "disposition";
+static const char of_scan[] = "foils_of_scan";
+static const char *const more_names[FG_LOT_MORE] = {"coil", "oven", "scanner", "order",
+                                                    "disposition"};
 
 /* Further columns are there where a row needs them. */
-static fg_status name_columns(fg_context *ctx, fg_manifest *manifest, bool split, bool disposed) {
+static fg_status name_columns(fg_context *ctx, fg_manifest *manifest, bool split,
+                              const bool more[FG_LOT_MORE]) {
   static const char *const names[] = {"scan", "foil", "lot", "die", "operator"};
   size_t column;
   for (size_t i = 0; i < COLUMNS; i++)
     FG_TRY(fg_manifest_add_column(ctx, manifest, names[i], strlen(names[i]), &column));
   if (split) FG_TRY(fg_manifest_add_column(ctx, manifest, of_scan, strlen(of_scan), &column));
-  if (!disposed) return FG_OK;
-  return fg_manifest_add_column(ctx, manifest, disposition, strlen(disposition), &column);
+  for (size_t i = 0; i < FG_LOT_MORE; i++)
+    if (more[i])
+      FG_TRY(fg_manifest_add_column(ctx, manifest, more_names[i], strlen(more_names[i]), &column));
+  return FG_OK;
 }
 
 /* "1 3 of 4": a bed with foils of several lots. */
@@ -137,23 +142,27 @@ static fg_status add_row(fg_context *ctx, export *at, const char *folder, const 
   FG_TRY(fg_text_print(ctx, &row[DIE], "%s", scan->die));
   FG_TRY(fg_text_print(ctx, &row[OPERATOR], "%s", scan->operator_name));
   size_t numbers = fg_manifest_column(&at->manifest, of_scan);
-  size_t fate = fg_manifest_column(&at->manifest, disposition);
   if (numbers != FG_NO_COLUMN) FG_TRY(list_numbers(ctx, scan, &row[numbers]));
-  return fate == FG_NO_COLUMN ? FG_OK : fg_text_print(ctx, &row[fate], "%s", scan->disposition);
+  for (size_t i = 0; i < FG_LOT_MORE; i++) {
+    size_t column = fg_manifest_column(&at->manifest, more_names[i]);
+    if (column != FG_NO_COLUMN) FG_TRY(fg_text_print(ctx, &row[column], "%s", scan->more[i]));
+  }
+  return FG_OK;
 }
 
 /* Scans by their whole path: the lot's folder may go elsewhere. */
 static fg_status make_manifest(fg_context *ctx, export *at, const char *lot) {
   const char *folder = at->station->request->folder;
-  bool split = false, disposed = false;
+  bool split = false, more[FG_LOT_MORE] = {false};
   for (size_t i = 0; i < at->content.count; i++) {
     split = split || at->content.scans[i].count < at->content.scans[i].of;
-    disposed = disposed || at->content.scans[i].disposition[0];
+    for (size_t k = 0; k < FG_LOT_MORE; k++)
+      more[k] = more[k] || at->content.scans[i].more[k][0];
   }
   char *whole = realpath(folder, NULL);
   if (!whole)
     return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", folder, strerror(errno));
-  fg_status status = name_columns(ctx, &at->manifest, split, disposed);
+  fg_status status = name_columns(ctx, &at->manifest, split, more);
   for (size_t i = 0; i < at->content.count && status == FG_OK; i++)
     status = add_row(ctx, at, whole, lot, &at->content.scans[i]);
   free(whole);

@@ -8,15 +8,20 @@
 #include "core/text.h"
 
 enum { FOIL_SCAN, FOIL_PATH, FOIL_SUM, FOIL_SETUP, FOIL_OF, FOIL_NUMBER, FOIL_SERIAL, FOIL_DIE };
-enum { FOIL_OPERATOR = FOIL_DIE + 1, FOIL_WITHHELD, FOIL_REPLACED, FOIL_DISPOSED };
+enum { FOIL_OPERATOR = FOIL_DIE + 1, FOIL_WITHHELD, FOIL_REPLACED, FOIL_HELD, FOIL_MORE };
 
+/* FOIL_HELD is false where the file of the scan's path holds something else now. */
 static const char foils_of_lot[] =
     "SELECT s.id, s.path, s.sha256, s.setup, (SELECT count(*) FROM foils AS o WHERE o.scan = s.id),"
     " f.number, f.serial, f.die, f.operator, s.withheld IS NOT NULL, " FG_LOT_REPLACED
-    ", coalesce((SELECT kind FROM dispositions AS d WHERE d.foil = f.id ORDER BY d.id DESC LIMIT "
+    ", (SELECT a.scan FROM files JOIN arrivals AS a ON a.id = files.arrival WHERE files.path = "
+    "s.path)"
+    " IS s.id, f.coil, f.oven, f.scanner,"
+    " coalesce((SELECT number FROM orders WHERE id = f.order_id), ''),"
+    " coalesce((SELECT kind FROM dispositions AS d WHERE d.foil = f.id ORDER BY d.id DESC LIMIT "
     "1),"
-    " '')"
-    " FROM foils AS f JOIN scans AS s ON s.id = f.scan WHERE f.lot = ? ORDER BY s.id, f.number";
+    " '') FROM foils AS f JOIN scans AS s ON s.id = f.scan WHERE f.lot = ?"
+    " ORDER BY s.id, f.number";
 
 static fg_status add_content_scan(fg_context *ctx, fg_lot_content *content, const fg_query *row) {
   void *block = content->scans;
@@ -28,7 +33,10 @@ static fg_status add_content_scan(fg_context *ctx, fg_lot_content *content, cons
                         .of = (size_t)fg_query_get_integer(row, FOIL_OF)};
   fg_text_clip(scan->sha256, sizeof scan->sha256, "%s", fg_query_get_text(row, FOIL_SUM));
   content->setup = fg_query_get_integer(row, FOIL_SETUP);
-  return fg_text_print(ctx, &scan->path, "%s", fg_query_get_text(row, FOIL_PATH));
+  FG_TRY(fg_text_print(ctx, &scan->path, "%s", fg_query_get_text(row, FOIL_PATH)));
+  if (fg_query_get_integer(row, FOIL_HELD)) return FG_OK;
+  /* A manifest names each scan once, and never the file of another. */
+  return fg_text_append(ctx, &scan->path, ".overwritten-%.12s", scan->sha256);
 }
 
 /* True when `word` is one of the words of `text`. */
@@ -53,7 +61,8 @@ static fg_status add_content_foil(fg_context *ctx, fg_lot_scan *scan, const fg_q
   scan->numbers[scan->count++] = (int)fg_query_get_integer(row, FOIL_NUMBER);
   FG_TRY(join_word(ctx, &scan->serial, fg_query_get_text(row, FOIL_SERIAL)));
   FG_TRY(join_word(ctx, &scan->die, fg_query_get_text(row, FOIL_DIE)));
-  FG_TRY(join_word(ctx, &scan->disposition, fg_query_get_text(row, FOIL_DISPOSED)));
+  for (int i = 0; i < FG_LOT_MORE; i++)
+    FG_TRY(join_word(ctx, &scan->more[i], fg_query_get_text(row, FOIL_MORE + i)));
   return join_word(ctx, &scan->operator_name, fg_query_get_text(row, FOIL_OPERATOR));
 }
 
@@ -105,7 +114,8 @@ void fg_lot_content_free(fg_lot_content *content) {
     free(scan->serial);
     free(scan->die);
     free(scan->operator_name);
-    free(scan->disposition);
+    for (int k = 0; k < FG_LOT_MORE; k++)
+      free(scan->more[k]);
   }
   free(content->scans);
   *content = (fg_lot_content){0};

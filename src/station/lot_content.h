@@ -5,15 +5,27 @@
 
 #include "station/database.h"
 
+/* Further columns of the lot's manifest, where a row needs them. */
+typedef enum fg_lot_more {
+  FG_LOT_COIL,
+  FG_LOT_OVEN,
+  FG_LOT_SCANNER,
+  FG_LOT_ORDER,
+  FG_LOT_DISPOSITION,
+  FG_LOT_MORE
+} fg_lot_more;
+
 /* A scan with foils of the lot; of a bed's foils some may be of other lots. */
 typedef struct fg_lot_scan {
   int64_t id;
-  char *path; /* below the station's folder, as stored (stored_name.h) */
+  /* Below the station's folder, as stored (stored_name.h). A scan whose file another scan has
+   * replaced gets a name that no file has. */
+  char *path;
   char sha256[65];
   size_t of; /* foils of the scan, whatever lot they belong to */
   int *numbers;
   size_t count, capacity; /* of the lot's foils among them */
-  char *serial, *die, *operator_name, *disposition;
+  char *serial, *die, *operator_name, *more[FG_LOT_MORE];
 } fg_lot_scan;
 
 /* A foil that had to be scanned again (not measured, undecided or without a verdict) counts with

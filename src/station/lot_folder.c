@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "station/lot_folder.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "core/sha256.h"
 #include "core/text.h"
 #include "core/utf8.h"
+#include "lot/run/folder_lock.h"
+#include "lot/run/lot.h"
 
 #define WITHOUT_LOT "without_lot"
 
@@ -66,5 +70,70 @@ fg_status fg_lot_folder_find(fg_context *ctx, const char *folder, const char *lo
   if (status == FG_OK) return FG_OK;
   free(*path);
   *path = NULL;
+  return status;
+}
+
+static void remove_files(const char *path) {
+  DIR *folder = opendir(path);
+  if (!folder) return;
+  for (struct dirent *entry; (entry = readdir(folder));)
+    unlinkat(dirfd(folder), entry->d_name, 0); /* of a folder it does nothing */
+  closedir(folder);
+}
+
+fg_status fg_lot_folder_stage(fg_context *ctx, const char *folder, const char *lot, char **path) {
+  char name[FG_LOT_FOLDER_NAME];
+  fg_lot_folder_name(lot, name);
+  FG_TRY(fg_text_print(ctx, path, "%s/" FG_LOTS_FOLDER, folder));
+  fg_status status = check_step(ctx, *path, true);
+  if (status == FG_OK) status = fg_text_append(ctx, path, "/.closing");
+  if (status == FG_OK) status = check_step(ctx, *path, true);
+  if (status == FG_OK) status = fg_text_append(ctx, path, "/%s", name);
+  if (status == FG_OK) status = check_step(ctx, *path, true);
+  if (status == FG_OK) remove_files(*path);
+  if (status == FG_OK) return FG_OK;
+  free(*path);
+  *path = NULL;
+  return status;
+}
+
+void fg_lot_folder_unstage(const char *staged) {
+  char *parent = strdup(staged), *slash = parent ? strrchr(parent, '/') : NULL;
+  remove_files(staged);
+  rmdir(staged);
+  if (slash) *slash = '\0';
+  if (slash) rmdir(parent);
+  free(parent);
+}
+
+static fg_status move_files(fg_context *ctx, DIR *from, DIR *to, const char *folder) {
+  for (struct dirent *entry; (entry = readdir(from));) {
+    if (entry->d_name[0] == '.') continue;
+    if (renameat(dirfd(from), entry->d_name, dirfd(to), entry->d_name) != 0)
+      return fg_fail(ctx, FG_ERR_IO, "%s/%s: cannot be written: %s", folder, entry->d_name,
+                     strerror(errno));
+  }
+  fsync(dirfd(to));
+  return FG_OK;
+}
+
+/* Names that the new report does not have go first: an earlier model of the scanner, beams. */
+static fg_status replace_files(fg_context *ctx, const char *staged, const char *folder) {
+  FG_TRY(fg_lot_remove_report(ctx, folder));
+  FG_TRY(fg_lot_write_model(ctx, folder, NULL));
+  DIR *from = opendir(staged), *to = opendir(folder);
+  fg_status status = from && to ? move_files(ctx, from, to, folder)
+                                : fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s",
+                                          from ? folder : staged, strerror(errno));
+  if (from) closedir(from);
+  if (to) closedir(to);
+  return status;
+}
+
+fg_status fg_lot_folder_publish(fg_context *ctx, const char *staged, const char *folder) {
+  int lock = -1;
+  FG_TRY(fg_folder_lock(ctx, folder, &lock));
+  fg_status status = replace_files(ctx, staged, folder);
+  close(lock);
   return status;
 }

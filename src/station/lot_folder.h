@@ -19,4 +19,15 @@ void fg_lot_folder_name(const char *lot, char name[FG_LOT_FOLDER_NAME]);
 fg_status fg_lot_folder_find(fg_context *ctx, const char *folder, const char *lot, bool make,
                              char **path);
 
+/* A lot is written into a folder of its own, FOLDER/lots/.closing/NAME, and its files are moved to
+ * FOLDER/lots/NAME once all are there: a report that cannot be written (a full disk, a killed
+ * station) leaves that of before. */
+
+/* Makes the folder, empty; the caller frees the path. */
+fg_status fg_lot_folder_stage(fg_context *ctx, const char *folder, const char *lot, char **path);
+/* Moves the files of `staged` in the place of those of `folder`. */
+fg_status fg_lot_folder_publish(fg_context *ctx, const char *staged, const char *folder);
+/* Removes the folder and its files. */
+void fg_lot_folder_unstage(const char *staged);
+
 #endif

@@ -66,12 +66,8 @@ fg_status fg_order_read_open(fg_context *ctx, sqlite3 *connection, fg_order *ord
 /* ---- files of an ERP ---- */
 
 static void cell_text(const fg_column *column, size_t row, char text[FG_NAMED_TEXT]) {
-  text[0] = '\0';
-  if (column->word && column->word[row] == FG_TABLE_MISSING) return;
-  if (column->word && column->word[row] != FG_TABLE_NOT_A_WORD)
-    fg_text_clip(text, FG_NAMED_TEXT, "%s", column->words[column->word[row]]);
-  else
-    fg_text_clip(text, FG_NAMED_TEXT, "%.15g", column->number[row].value);
+  bool missing = !column->word || column->word[row] == FG_TABLE_MISSING;
+  fg_text_clip(text, FG_NAMED_TEXT, "%s", missing ? "" : column->words[column->word[row]]);
 }
 
 static const fg_column *find_order_column(const fg_table *table, const char *name,
@@ -82,48 +78,77 @@ static const fg_column *find_order_column(const fg_table *table, const char *nam
   return NULL;
 }
 
-/* The last row of the number counts: ERPs append. */
-static void find_order_row(const fg_table *table, const char *number, fg_order *order) {
+static const char *without_zeros(const char *number) {
+  bool digits = number[strspn(number, "0123456789")] == '\0';
+  return digits ? number + strspn(number, "0") : number;
+}
+
+/* Returns the last row of the number, as ERPs append; where none is written like it, one that
+ * differs in leading zeros. table->rows: there is none. */
+static size_t find_order_row(const fg_table *table, const char *number) {
   const fg_column *numbers = find_order_column(table, columns[0].name, columns[0].other);
-  const fg_column *pieces = find_order_column(table, "pieces", "quantity");
   char text[FG_NAMED_TEXT];
+  size_t found = table->rows;
   for (size_t row = table->rows; numbers && row-- > 0;) {
     cell_text(numbers, row, text);
-    if (strcmp(text, number) != 0) continue;
-    for (size_t i = 0; i < COLUMNS; i++) {
-      const fg_column *column = find_order_column(table, columns[i].name, columns[i].other);
-      if (column) cell_text(column, row, (char *)order + columns[i].offset);
-    }
-    if (pieces) cell_text(pieces, row, text), order->pieces = strtoll(text, NULL, 10);
-    return;
+    if (!strcmp(text, number)) return row;
+    if (found == table->rows && text[0] && !strcmp(without_zeros(text), without_zeros(number)))
+      found = row;
   }
+  return found;
+}
+
+static void read_order_cells(const fg_table *table, size_t row, fg_order *order) {
+  const fg_column *pieces = find_order_column(table, "pieces", "quantity");
+  char text[FG_NAMED_TEXT];
+  *order = (fg_order){0};
+  for (size_t i = 0; i < COLUMNS; i++) {
+    const fg_column *column = find_order_column(table, columns[i].name, columns[i].other);
+    if (column) cell_text(column, row, (char *)order + columns[i].offset);
+  }
+  if (pieces) cell_text(pieces, row, text), order->pieces = strtoll(text, NULL, 10);
 }
 
 static fg_status find_in_order_file(fg_context *ctx, const char *path, const char *number,
                                     fg_order *order) {
   fg_table table = {0};
   char sum[65];
-  FG_TRY(fg_table_load(ctx, path, &table, sum));
-  find_order_row(&table, number, order);
+  FG_TRY(fg_table_load_words(ctx, path, &table, sum));
+  size_t row = find_order_row(&table, number);
+  if (row < table.rows) read_order_cells(&table, row, order);
   fg_table_free(&table);
   return FG_OK;
 }
 
-/* Every *.csv of the folder, until one has the number. */
+/* True for the file of two that an ERP wrote last. */
+static bool is_later(const struct stat *file, const struct stat *other) {
+  return file->st_mtim.tv_sec != other->st_mtim.tv_sec
+             ? file->st_mtim.tv_sec > other->st_mtim.tv_sec
+             : file->st_mtim.tv_nsec > other->st_mtim.tv_nsec;
+}
+
+/* Of every *.csv of the folder that has the number, the one that was written last counts. */
 static fg_status find_in_folder(fg_context *ctx, const char *path, const char *number,
                                 fg_order *order) {
   DIR *folder = opendir(path);
   fg_status status = FG_OK;
+  struct stat newest = {0}, about;
   if (!folder) return fg_fail(ctx, FG_ERR_IO, "%s: the folder of orders cannot be read", path);
-  for (struct dirent *entry; status == FG_OK && !order->number[0] && (entry = readdir(folder));) {
+  for (struct dirent *entry; status == FG_OK && (entry = readdir(folder));) {
     size_t length = strlen(entry->d_name);
     char *file = NULL;
     if (length < 5 || entry->d_name[0] == '.' ||
-        strcasecmp(entry->d_name + length - 4, ".csv") != 0)
+        strcasecmp(entry->d_name + length - 4, ".csv") != 0 ||
+        fstatat(dirfd(folder), entry->d_name, &about, 0) != 0)
       continue;
+    if (order->number[0] && !is_later(&about, &newest)) continue;
+    fg_order found = {0};
     status = fg_text_print(ctx, &file, "%s/%s", path, entry->d_name);
-    if (status == FG_OK) status = find_in_order_file(ctx, file, number, order);
+    if (status == FG_OK) status = find_in_order_file(ctx, file, number, &found);
     free(file);
+    if (status != FG_OK || !found.number[0]) continue;
+    *order = found;
+    newest = about;
   }
   closedir(folder);
   return status;

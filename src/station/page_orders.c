@@ -170,13 +170,17 @@ static void take_fields(const fg_request *request, fg_order *order) {
   if (pieces[0]) order->pieces = strtoll(pieces, NULL, 10);
 }
 
+/* The order opened last is in force. Where the clock was set back, that is not the latest time: an
+ * open order's time comes before it. */
 static fg_status keep_order(fg_context *ctx, sqlite3 *writer, const fg_order *order) {
   fg_query query;
   fg_query_begin(writer,
                  "INSERT INTO orders (number, part, lot, die, coil, operator, pieces, opened_at)"
-                 " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (number) DO UPDATE SET part"
-                 " = ?2, lot = ?3, die = ?4, coil = ?5, operator = ?6, pieces = ?7, opened_at = ?8,"
-                 " closed_at = 0, closed_by = ''",
+                 " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, max(?8, (SELECT coalesce(max(opened_at), 0)"
+                 " + 1 FROM orders WHERE closed_at = 0 AND number <> ?1))) ON CONFLICT (number) DO"
+                 " UPDATE SET part = excluded.part, lot = excluded.lot, die = excluded.die, coil ="
+                 " excluded.coil, operator = excluded.operator, pieces = excluded.pieces, opened_at"
+                 " = excluded.opened_at, closed_at = 0, closed_by = ''",
                  &query);
   fg_query_text(&query, order->number);
   fg_query_text(&query, order->part);
@@ -219,7 +223,7 @@ fg_status fg_action_order(fg_context *ctx, fg_inspection *station, const fg_requ
     ask_for_fields(number, answer);
     return FG_OK;
   }
-  strcpy(order.number, number);
+  if (!known) strcpy(order.number, number);
   FG_TRY(fg_station_database_begin(ctx, &station->database));
   FG_TRY(fg_station_database_end(ctx, &station->database,
                                  keep_order(ctx, station->database.writer, &order)));

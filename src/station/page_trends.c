@@ -158,7 +158,8 @@ static void write_caption(const page *p) {
             "foil to the next (σ %.4g).",
             trend->quantity.chart.sigma);
   if (tolerance)
-    fprintf(p->out, " Red: beyond the tolerance of the design (%s).",
+    fprintf(p->out, " Red: beyond the tolerance of the %s (%s).",
+            trend->mixed ? "newest foil's recipe" : "design",
             p->choice->owner == FG_QUANTITY_OF_BUMP && !p->choice->bump
                 ? "which each bump must keep; the chart is of means"
                 : "a limit that is far off is not drawn");
@@ -189,8 +190,11 @@ static void write_runs(const page *p, const fg_trend_run *runs, size_t count, si
     return;
   }
   fprintf(p->out,
-          "<p class=\"next\">Something changed: look for what was new then (die, coil, press, "
-          "operator, scanner).</p>\n<ol class=\"runs\">");
+          "<p class=\"next\">Look for what was new then (die, coil, press, operator, scanner). By "
+          "chance alone a steady process has %.2g points with a signal in %zu %s.</p>\n"
+          "<ol class=\"runs\">",
+          fg_chart_chance_signals(p->trend->count, p->station->settings->lot.run_rules),
+          p->trend->count, things(p->choice));
   for (size_t i = 0; i < count; i++)
     write_run(p, &runs[i]);
   fputs("</ol>\n", p->out);

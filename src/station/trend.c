@@ -56,12 +56,15 @@ static const char of_all[] = "SELECT measured.foil, measured.foil, value FROM me
 static const char of_named[] =
     "SELECT measured.foil, measured.foil, value FROM measured JOIN foils ON foils.id ="
     " measured.foil WHERE" CHOSEN " AND" NAMED " ORDER BY measured.foil, bump";
-/* A lot's values are the means of its foils; lots come in the order of their first foil. */
+/* A lot's values are the means of its foils, of all scans that show a foil: it was made once. Lots
+ * come in the order of their first foil. */
 static const char of_lots[] =
     "WITH mean AS (SELECT measured.foil AS foil, avg(value) AS value FROM measured WHERE" CHOSEN
     " GROUP BY measured.foil), first AS (SELECT lot, min(id) AS id FROM foils GROUP BY lot)"
-    " SELECT first.id, first.id, mean.value FROM mean JOIN foils ON foils.id = mean.foil"
-    " JOIN first ON first.lot = foils.lot WHERE" NAMED " ORDER BY first.id, mean.foil";
+    " SELECT first.id, first.id, avg(mean.value) FROM mean JOIN foils ON foils.id = mean.foil"
+    " JOIN first ON first.lot = foils.lot WHERE" NAMED
+    " GROUP BY first.id, CASE foils.serial WHEN '' THEN mean.foil ELSE foils.serial END"
+    " ORDER BY first.id, min(mean.foil)";
 
 static fg_status read_values(fg_context *ctx, sqlite3 *reader, fg_trend *trend) {
   const fg_trend_choice *choice = trend->choice;
@@ -136,12 +139,6 @@ static fg_status chart_lots(unsigned rules, fg_trend *trend) {
   return FG_OK;
 }
 
-static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quantity *row) {
-  for (size_t i = 0; i < design->tolerance_count; i++)
-    if (!strcmp(design->tolerances[i].quantity, row->name)) return &design->tolerances[i];
-  return NULL;
-}
-
 /* Judges capability; too few values have none, which is no error. */
 static void judge_trend(const fg_lot_settings *settings, size_t points, fg_lot_quantity *quantity) {
   fg_context unused;
@@ -181,6 +178,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
   FG_TRY(read_values(ctx, reader, trend));
   choose_points(trend);
   find_trend_spread(&trend->quantity);
+  FG_TRY(fg_trend_find_tolerance(ctx, reader, trend));
   if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);
   if (!trend->count) return FG_OK;
   FG_TRY(find_shifts(ctx, request, reader, trend));
@@ -198,10 +196,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
 fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                         const fg_trend_choice *choice, fg_trend *trend) {
   const fg_lot_settings *settings = &station->settings->lot;
-  *trend = (fg_trend){.choice = choice,
-                      .quantity = {.row = choice->row,
-                                   .owner = choice->owner,
-                                   .tolerance = find_tolerance(&settings->design, choice->row)}};
+  *trend = (fg_trend){.choice = choice, .quantity = {.row = choice->row, .owner = choice->owner}};
   fg_status status = read_and_chart(ctx, station->request, settings, reader, trend);
   if (status != FG_OK) fg_trend_free(trend);
   return status;
@@ -239,12 +234,6 @@ void fg_trend_name(sqlite3 *reader, const fg_trend *trend, size_t point, char *n
   fg_query_end(&unused, &query, "reading a name");
 }
 
-/* Returns the number of points that a rule covers (control.h). */
-static size_t rule_length(unsigned rule) {
-  static const size_t lengths[FG_RUN_RULES] = {1, 9, 6, 14, 3, 5, 15, 8};
-  return lengths[rule - 1];
-}
-
 static void add_run(fg_trend_run runs[FG_TREND_RUNS], size_t *all, fg_trend_run run) {
   if (*all < FG_TREND_RUNS) runs[*all] = run;
   ++*all;
@@ -263,7 +252,7 @@ size_t fg_trend_runs(const fg_trend *trend, fg_trend_run runs[FG_TREND_RUNS], si
       size_t begin = i;
       while (begin > 0 && chart->point[begin - 1].rules & bit)
         begin--;
-      size_t length = rule_length(rule);
+      size_t length = fg_run_rule_length(rule);
       add_run(runs, all,
               (fg_trend_run){rule, begin + 1 > length ? begin + 1 - length : 0, i, *all + 1});
     }

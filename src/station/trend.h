@@ -13,7 +13,8 @@ typedef struct fg_trend {
   fg_lot_quantity quantity; /* values and chart; `size` is that of each point */
   int64_t *foil;            /* of each point: the foil, or the lot's first; owned */
   size_t before, count, total, first, last;
-  bool mixed;    /* foils of more than one recipe: no tolerance is that of all */
+  bool mixed;             /* foils of more than one recipe: no tolerance is that of all */
+  fg_tolerance tolerance; /* by the recipe of the newest foil: quantity.tolerance */
   double *shift; /* of each point by causes, about which limits are taken; NULL: there is none */
   struct fg_cause *cause; /* accepted ones; owned */
   size_t causes;
@@ -54,6 +55,10 @@ size_t fg_trend_changes(sqlite3 *reader, const fg_trend *trend,
 
 /* Returns true when the foils of the chart were measured by more than one recipe. */
 bool fg_trend_mixes_recipes(sqlite3 *reader, const fg_trend *trend);
+
+/* Finds the tolerance by which the newest foil was judged: that of its own recipe, which may be a
+ * part's or an earlier one. quantity.tolerance stays NULL where it has none. */
+fg_status fg_trend_find_tolerance(fg_context *ctx, sqlite3 *reader, fg_trend *trend);
 
 /* Draws the chart as SVG: for wide pages and paper, or for narrow ones. */
 void fg_trend_plot(FILE *out, sqlite3 *reader, const fg_trend *trend, const fg_trend_run *runs,

@@ -2,6 +2,11 @@
 /* Changes of the setup: a shift of the chart there may come from it. */
 #include "station/trend.h"
 
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
 /* Changes of the setup from one foil to the next, the newest first. A foil measured again by an
  * older setup is a change, too. */
 static const char changes[] =
@@ -67,4 +72,37 @@ bool fg_trend_mixes_recipes(sqlite3 *reader, const fg_trend *trend) {
   for (size_t i = 1; i < trend->count && !mixed; i++)
     mixed = number_of_two(reader, other_recipe, trend->foil[0], trend->foil[i]) > 0;
   return mixed;
+}
+
+static fg_status parse_tolerance(fg_context *ctx, const char *recipe, fg_trend *trend) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof(fg_lot_settings), &block));
+  fg_lot_settings *settings = block;
+  const fg_design *design = &settings->design;
+  fg_lot_settings_default(settings);
+  fg_status status = fg_lot_settings_parse(ctx, "the recipe of then", recipe, settings);
+  for (size_t i = 0; status == FG_OK && i < design->tolerance_count; i++) {
+    if (strcmp(design->tolerances[i].quantity, trend->choice->row->name) != 0) continue;
+    trend->tolerance = design->tolerances[i];
+    trend->quantity.tolerance = &trend->tolerance;
+  }
+  free(settings);
+  return status;
+}
+
+fg_status fg_trend_find_tolerance(fg_context *ctx, sqlite3 *reader, fg_trend *trend) {
+  fg_context inner;
+  fg_query query;
+  fg_status status = FG_OK;
+  if (!trend->count) return FG_OK;
+  fg_query_begin(reader,
+                 "SELECT recipe FROM foils JOIN scans ON scans.id = scan JOIN setups ON setups.id ="
+                 " setup WHERE foils.id = ?",
+                 &query);
+  fg_query_integer(&query, trend->foil[trend->count - 1]);
+  /* A recipe that only another program can read has no tolerance that could be drawn. */
+  if (fg_query_row(&query)) status = parse_tolerance(&inner, fg_query_get_text(&query, 0), trend);
+  fg_status ended = fg_query_end(ctx, &query, "reading the recipes");
+  if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);
+  return ended;
 }

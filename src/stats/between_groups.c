@@ -16,10 +16,10 @@ static double centre_at(const fg_group_mean *groups, size_t count, double tau2, 
   for (size_t i = 0; i < count; i++) {
     double w = 1 / (tau2 + groups[i].variance);
     weights += w;
-    sum += w * groups[i].mean;
+    sum += w * (groups[i].mean - groups[0].mean);
   }
   *weight = weights;
-  return sum / weights;
+  return groups[0].mean + sum / weights; /* equal means have it to the bit */
 }
 
 /* Falls as tau² grows. */

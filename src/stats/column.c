@@ -184,19 +184,30 @@ static bool parse_cell_number(fg_column *column, size_t row, const char *text, s
          fg_extended_parse(pointed, length, number);
 }
 
-fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
-                              size_t length, bool commas) {
-  fg_extended number;
-  while (length && (text[0] == ' ' || text[0] == '\t'))
-    text++, length--;
-  while (length && (text[length - 1] == ' ' || text[length - 1] == '\t'))
-    length--;
-  if (parse_cell_number(column, row, text, length, commas, &number))
-    return fg_column_push_number(ctx, column, row, number);
-  if (is_missing(text, length)) return fg_column_push_missing(ctx, column, row);
+static void trim(const char **text, size_t *length) {
+  while (*length && ((*text)[0] == ' ' || (*text)[0] == '\t'))
+    ++*text, --*length;
+  while (*length && ((*text)[*length - 1] == ' ' || (*text)[*length - 1] == '\t'))
+    --*length;
+}
+
+fg_status fg_column_push_as_word(fg_context *ctx, fg_column *column, size_t row, const char *text,
+                                 size_t length) {
   char *word = NULL;
+  trim(&text, &length);
+  if (!length) return fg_column_push_missing(ctx, column, row);
   FG_TRY(fg_text_print(ctx, &word, "%.*s", (int)length, text));
   fg_status status = fg_column_push_word(ctx, column, row, word);
   free(word);
   return status;
+}
+
+fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
+                              size_t length, bool commas) {
+  fg_extended number;
+  trim(&text, &length);
+  if (parse_cell_number(column, row, text, length, commas, &number))
+    return fg_column_push_number(ctx, column, row, number);
+  if (is_missing(text, length)) return fg_column_push_missing(ctx, column, row);
+  return fg_column_push_as_word(ctx, column, row, text, length);
 }

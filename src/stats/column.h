@@ -26,6 +26,14 @@ fg_status fg_column_push_word(fg_context *ctx, fg_column *column, size_t row, co
 fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
                               size_t length, bool commas);
 
+/* Appends a text as a word, or as missing where it is empty. */
+fg_status fg_column_push_as_word(fg_context *ctx, fg_column *column, size_t row, const char *text,
+                                 size_t length);
+
+/* As fg_table_parse, all cells as words (fg_table_load_words). */
+fg_status fg_table_parse_words(fg_context *ctx, const char *source, const char *text, size_t size,
+                               fg_table *table);
+
 /* Sets `uncertainty` of columns with ambiguous decimal marks. Call it once all rows are read: it
  * compares all columns. */
 fg_status fg_table_warn_decimals(fg_context *ctx, fg_table *table, unsigned char separator);

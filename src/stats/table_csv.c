@@ -19,6 +19,7 @@ typedef struct csv_reader {
   size_t column; /* of the next cell */
   bool header;   /* the header is complete */
   bool empty;    /* all cells of this row so far are empty */
+  bool words;    /* no cell is a number */
   unsigned char separator;
   char **pending; /* cells of the row, stored until one of them is not empty */
   size_t *pending_length;
@@ -100,6 +101,13 @@ static const char *what_to_do(const csv_reader *r) {
   return "";
 }
 
+static fg_status push_cell_text(const csv_reader *r, fg_column *column, const char *text,
+                                size_t length) {
+  size_t row = r->table->rows;
+  return r->words ? fg_column_push_as_word(r->ctx, column, row, text, length)
+                  : fg_column_push_text(r->ctx, column, row, text, length, r->separator != ',');
+}
+
 static fg_status end_row(csv_reader *r) {
   fg_table *table = r->table;
   if (r->empty) return FG_OK;
@@ -108,8 +116,7 @@ static fg_status end_row(csv_reader *r) {
                    "%s: row %zu (line %zu) has %zu cells, the header names %zu columns%s",
                    r->source, table->rows + 1, r->line, r->column, table->columns, what_to_do(r));
   for (size_t i = 0; i < table->columns; i++)
-    FG_TRY(fg_column_push_text(r->ctx, &table->column[i], table->rows, r->pending[i],
-                               r->pending_length[i], r->separator != ','));
+    FG_TRY(push_cell_text(r, &table->column[i], r->pending[i], r->pending_length[i]));
   FG_TRY(fg_memory_reserve(r->ctx, table->rows + 1, sizeof *table->line, &table->line_capacity,
                            (void **)&table->line));
   table->line[table->rows++] = r->line;
@@ -170,11 +177,11 @@ static fg_status check_encoding(fg_context *ctx, const char *source, const char 
   return FG_OK;
 }
 
-fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, size_t size,
-                         fg_table *table) {
+static fg_status parse_cells(fg_context *ctx, const char *source, const char *text, size_t size,
+                             bool words, fg_table *table) {
   fg_status status = FG_OK;
   struct csv_parser parser;
-  csv_reader reader = {.ctx = ctx, .table = table, .source = source, .empty = true};
+  csv_reader reader = {.ctx = ctx, .table = table, .source = source, .empty = true, .words = words};
   *table = (fg_table){0};
   FG_TRY(check_encoding(ctx, source, &text, &size));
   size_t hint = fg_csv_hint(text, size, &reader.separator);
@@ -202,6 +209,16 @@ exit:
   free(reader.pending_length);
   if (status != FG_OK) fg_table_free(table);
   return status;
+}
+
+fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, size_t size,
+                         fg_table *table) {
+  return parse_cells(ctx, source, text, size, false, table);
+}
+
+fg_status fg_table_parse_words(fg_context *ctx, const char *source, const char *text, size_t size,
+                               fg_table *table) {
+  return parse_cells(ctx, source, text, size, true, table);
 }
 
 /* Text under construction. */

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/sha256.h"
 #include "foilgauge/table.h"
+#include "stats/column.h"
 
 enum { CSV_BYTES_MAX = 1 << 30 };
 
@@ -35,7 +36,11 @@ exit:
   return status;
 }
 
-fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
+typedef fg_status parse_table(fg_context *ctx, const char *source, const char *text, size_t size,
+                              fg_table *table);
+
+static fg_status load_table(fg_context *ctx, const char *path, parse_table *parse, fg_table *table,
+                            char sha256[65]) {
   struct sha256_ctx sum;
   char *text = NULL;
   size_t size = 0;
@@ -44,8 +49,16 @@ fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char
     sha256_init(&sum);
     sha256_update(&sum, size, (const uint8_t *)text);
     fg_sha256_finish(&sum, sha256);
-    status = fg_table_parse(ctx, is_standard(path) ? "standard input" : path, text, size, table);
+    status = parse(ctx, is_standard(path) ? "standard input" : path, text, size, table);
   }
   free(text);
   return status;
+}
+
+fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
+  return load_table(ctx, path, fg_table_parse, table, sha256);
+}
+
+fg_status fg_table_load_words(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
+  return load_table(ctx, path, fg_table_parse_words, table, sha256);
 }

@@ -175,6 +175,11 @@ for lot in ("first", "second"):
             names.append(f"foil {foil + 1}")
     template.write(lot + "_named", foils, {"foil": names})
     template.write(lot + "_apart", foils)
+# One stated thickness for all foils: the last bit of a mean over 23 or 41 of them is no difference.
+template = made.Template(sys.argv[2], "stated", {**made.DESIGN, "bump_count": 3, "thickness_mm": 0.1003}, renderer=sys.argv[3])
+process = made.Process(random.Random(1), lot_sd=0)
+for count in (3, 10, 14, 23, 30, 41):
+    template.write(f"stated{count}", [template.foil(*foil) for foil in process.lot(made.die_of_design(made.DESIGN, 3), count)])
 pathlib.Path("die_design.json").write_text('{"schema":"foilgauge/design/1","bump_count":9}')
 P
 expect 0 'No two lots differ' index first_named second_named
@@ -186,6 +191,8 @@ is '[q["foils"] for q in r["lots"][0]["quantities"].values()][0]' 36
 [ "$(value first_named/lot.json '[r["quantities"]["radius_mm"][k] for k in ("count", "stable")]')" = '[81, True]' ] || fail "a chart of scans"
 [ "$(value first_apart/lot.json '[r["quantities"]["radius_mm"][k] for k in ("count", "stable")]')" = '[324, False]' ] || fail "a chart of scans that no column joins"
 grep -q 'Different foils' first_named/index.html && ! grep -q 'Different foils' first_apart/index.html || fail "the page's number of foils"
+expect 0 'No two lots differ' index stated3 stated10 stated14 stated23 stated30 stated41
+is '[p["quantity"] for p in pairs if p["quantity"] == "thickness_mm"]' '[]' '[s for s in r["summary"] if "hickness" in s]' '[]'
 expect 0 '' "$program" die --target die_design.json --lot first_named -o next.json
 [ "$(value next.json 'r["expected"]["foils"]')" = 9 ] || fail "the next die counts scans for foils"
 valid lot.schema.json first_named/lot.json

@@ -11,6 +11,8 @@ sed -i 's/"design"/"station": {"backup": {"folder": "kept", "every_h": 24, "keep
 old=$work/kept/foilgauge-20200101-000000.sqlite
 touch -d '5 days ago' "$old"
 touch -d '5 days ago' "$work/kept/notes.sqlite"
+# Of a clock that was ahead: it does not stand for the backups to come.
+touch "$work/kept/foilgauge-20990101-000000.sqlite"
 # query FILE SQL
 query() {
   python3 -c 'import sqlite3, sys; print(*sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchone())' "$1" "$2"
@@ -20,7 +22,8 @@ start "$work/scans" $recipe
 wait_for 20 measured "$work/scans" 1
 wait_for 20 test ! -e "$old"
 [ -e "$work/kept/notes.sqlite" ] || fail "another file was removed"
-[ "$(ls "$work/kept"/foilgauge-*.sqlite | wc -l)" = 1 ] || fail "$(ls -la "$work/kept")"
+[ "$(ls "$work/kept"/foilgauge-*.sqlite | wc -l)" = 2 ] || fail "$(ls -la "$work/kept")"
+rm "$work/kept/foilgauge-20990101-000000.sqlite"
 [ "$(query "$work/kept"/foilgauge-*.sqlite 'PRAGMA integrity_check')" = ok ] || fail "the recipe's backup"
 "$program" station "$work/scans" --backup "$work/copy.sqlite" || fail "a backup beside the station"
 ! "$program" station "$work/scans" --backup "$work/copy.sqlite" 2>"$work/out" || fail "a backup was overwritten"

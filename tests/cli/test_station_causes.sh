@@ -58,6 +58,14 @@ for content, words in (("time,t\n2026-13-01,1\n", "is no time"), ("day,t\n1,1\n"
     said = subprocess.run(station + ["--context", serials, "--digest"], capture_output=True, text=True)
     assert words in said.stdout + said.stderr, (content, said)
 
+# A clock that was ahead for one scan: the last day is that of the newest scan.
+day = re.search(r"The 24 hours until \S+: \d+ foils?", text).group()
+first = database.execute("SELECT id, at FROM scans ORDER BY id LIMIT 1").fetchone()
+database.execute("UPDATE scans SET at = ? WHERE id = ?", (4102444800000, first[0])), database.commit()
+text = subprocess.run(station + ["--digest"], check=True, capture_output=True, text=True).stdout
+database.execute("UPDATE scans SET at = ? WHERE id = ?", (first[1], first[0])), database.commit()
+assert day in text, (day, text)
+
 # The page: asked, found, accepted, drawn, withdrawn.
 running = subprocess.Popen(station + ["--context", os.path.join(folder, "temperature.csv"), "--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 try:

@@ -5,6 +5,8 @@
 # Usage: test_station_language.sh PROGRAM
 name=test_station_language
 . "$(dirname "$0")/../support/station.sh"
+# A place that a sentence names twice would have one value at both.
+! grep -nE '^msgid.*(\{[a-z0-9]+\}).*\1' "$(dirname "$0")/../../src/language/"*.po || fail "a place of a sentence is there twice"
 missing=$(dirname "$program")/tests/missing_words
 [ -x "$missing" ] || fail "missing_words is not built beside $program"
 mkdir "$work/scans" "$work/pages"

@@ -70,6 +70,27 @@ grep -q 'bed.png,bed.1,L 1,,,1 of 2$' "$work/beds/L 1/manifest.csv" || fail "$(c
 [ "$(wc -l <"$work/beds/L 1/foils.csv")" -eq 4 ] || fail "a bed's foil of another lot is in the lot"
 "$program" merge "$work/beds/L 1" -o "$work/merged2" 2>/dev/null || fail "a part of a bed does not merge"
 
+# A scanner that always writes the same name: every scan counts, and a replaced one is not taken for its successor.
+mkdir "$work/same"
+for seed in 21 22 23; do
+  draw $seed "$work/same/L-x.png"
+  "$program" station "$work/same" --recipe "$work/recipe.json" --once 2>/dev/null
+done
+cp "$work/same/L-x.png" "$work/third.png"
+draw 22 "$work/same/L-x.png"
+"$program" station "$work/same" --recipe "$work/recipe.json" --once 2>/dev/null
+"$program" station "$work/same" --recipe "$work/recipe.json" --export "$work/same_out" 2>"$work/said" ||
+  fail "--export of replaced scans: $(cat "$work/said")"
+said "$work/said" "same_out/L 3 foils of 3 scans: 3 pass" "replaced scans"
+checks - "$work/same_out/L/manifest.csv" "$work/third.png" <<'PY' || fail "the names of replaced scans"
+import csv, hashlib, os, sys
+names = [row["scan"] for row in csv.DictReader(open(sys.argv[1]))]
+assert [os.path.exists(name) for name in names] == [False, True, False], names
+assert len(set(names)) == 3, names
+third = hashlib.sha256(open(sys.argv[2], "rb").read()).hexdigest()
+assert names[2].endswith("L-x.png.overwritten-" + third[:12]), names
+PY
+
 # Another setup: measured again with the lot's newest; scans that are gone count as not measured.
 sed 's/"group/"dpi": 1201, "group/' "$work/recipe.json" >"$work/other.json"
 cp "$work/drawn/late.png" "$work/in/L 1-late.png"
@@ -137,7 +158,7 @@ PY
 # A foil that comes too late is said, on its card and beside the lot.
 draw 6 "$work/in/L 1-late2.png"
 checks - "$work" >&2 <<'PY' || fail "late: $(cat "$work/err")"
-import re, sys, time, urllib.parse, urllib.request
+import os, re, sys, time, urllib.parse, urllib.request
 base = open(sys.argv[1] + "/address").read().strip()
 get = lambda path: plain(urllib.request.urlopen(base + path).read().decode())
 # The page names the file from its arrival on, its foil when it is measured.
@@ -145,11 +166,21 @@ wait_until(lambda: "comes after its lot &#39;L 1&#39; was closed by Ann" in get(
 lots = get("lots")
 assert "been corrected since" in lots, lots
 form = re.search('name="form" value="([0-9a-f]+)"', lots)[1]
+# A report that cannot be written leaves that of before.
+before = get("lot?name=L%201")
+blocked = sys.argv[1] + "/in/lots/.closing/L 1/results.jsonl"
+os.makedirs(blocked)
+urllib.request.urlopen(base + "close", urllib.parse.urlencode(dict(form=form, lot="L 1", by="Cem")).encode()).read()
+wait_until(lambda: "being closed" not in get("lots"))
+assert "could not be closed" in get("lots") and "by Cem" not in get("lots"), get("lots")
+assert get("lot?name=L%201") == before
+os.rmdir(blocked)
 fields = urllib.parse.urlencode(dict(form=form, lot="L 1", by="Bob")).encode()
 urllib.request.urlopen(base + "close", fields).read()
 wait_until(lambda: "being closed" not in get("lots"))
 lots = get("lots")
 assert "been corrected since" not in lots and "by Bob" in lots and ", 1 time before" in lots, lots
+assert get("lot?name=L%201") != before and not os.path.exists(sys.argv[1] + "/in/lots/.closing")
 PY
 kill "$station"
 wait "$station" 2>/dev/null || true

@@ -6,14 +6,18 @@
 name=test_station_orders
 . "$(dirname "$0")/../support/station.sh"
 mkdir "$work/scans" "$work/erp"
-for seed in 1 2 3 4 5 6 7 8; do
+for seed in 1 2 3 4 5 6 7 8 9 10; do
   radius=3.32
-  case $seed in 2 | 6 | 7 | 8) radius=3.4 ;; esac
+  case $seed in 2 | 6 | 7 | 8 | 9) radius=3.4 ;; 10) radius=3.39 ;; esac
   printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90,
     "design": {"bump_count": 2, "bump_radius_mm": %s}}]}' "$seed" "$radius" >"$work/spec.json"
   "$renderer" render "$work/spec.json" -o "$work/$seed.png"
 done
 printf 'Order;Batch;Tool;Material;Quantity\n4711;L7;B;K7;40\n4712;L8;A;K8;2\n' >"$work/erp/today.csv"
+# Numbers of things are no numbers; a later file's row counts.
+printf 'Order;Batch;Tool;Material;Quantity\n000815;old;B;K7;40\n1e3;L13;B;K7;4\n' >"$work/erp/a.csv"
+touch -d '1 hour ago' "$work/erp/a.csv"
+printf 'Order;Batch;Tool;Material;Quantity\n000815;00012;01;007;5\n4500012345678901234;1,5;B;K7;4\n' >"$work/erp/b.csv"
 printf 'not a table' >"$work/erp/readme.txt"
 cat >"$work/recipe.json" <<R
 {"schema": "foilgauge/recipe/1",
@@ -26,7 +30,7 @@ sed 's/"min": 3.3, "max": 3.34/"min": 3.38, "max": 3.42/; /"station"/,/"parts"/d
 "$program" station "$work/scans" --recipe "$work/recipe.json" --orders "$work/erp" --port 0 >"$work/address" 2>"$work/err" &
 station=$!
 checks - "$work" >&2 <<'PY' || fail "orders: $(cat "$work/err")"
-import os, re, shutil, sqlite3, sys, urllib.error, urllib.parse, urllib.request
+import csv, os, re, shutil, sqlite3, sys, urllib.error, urllib.parse, urllib.request
 work = sys.argv[1]
 base = wait_until(lambda: open(work + "/address").read().strip())
 def get(path):
@@ -110,5 +114,33 @@ assert [row[:2] for row in judged] == [("G1", "pass"), ("G2", "fail")] and judge
 post("/close", lot="L10", by="Ada")
 wait_until(lambda: os.path.exists(work + "/scans/lots/L10/lot.json"))
 assert "3.42" in open(work + "/scans/lots/L10/lot.json").read()
+# A chart has the tolerance of its foils' recipe, not the station's.
+post("/order", number="W2", part="wide", lot="L11")
+drop(9, "H1")
+drop(10, "H2")
+page = get("/trends?q=bump:radius_mm&lot=L11")
+assert re.search(r"max 3\.420*<", page) and re.search(r"min 3\.380*<", page), re.findall("(?:max|min) 3[^<]*", page)
+assert "tolerance of the design" in page
+page = get("/trends?q=bump:radius_mm")
+assert "tolerance of the newest foil&#39;s recipe" in page or "tolerance of the newest foil's recipe" in page, page
+
+# The clock is set back: the order opened last is in force all the same.
+database.execute("UPDATE orders SET opened_at = opened_at + 86400000 WHERE number = 'W2'"), database.commit()
+post("/order", number="N1", lot="L12")
+assert "Order N1</a>: <b>0</b>" in get("/"), get("/")
+def opened(number):
+    post("/order", number=number)
+    return database.execute("SELECT number, lot, die, coil, pieces FROM orders ORDER BY opened_at DESC").fetchone()
+assert opened("000815") == ("000815", "00012", "01", "007", 5), opened("000815")
+assert opened("1e3") == ("1e3", "L13", "B", "K7", 4)
+assert opened("815") == ("000815", "00012", "01", "007", 5), opened("815")
+assert opened("4500012345678901234") == ("4500012345678901234", "1,5", "B", "K7", 4)
+
+# Coil and order of a foil are in its lot's files.
+post("/close", lot="L7", by="Ada")
+wait_until(lambda: os.path.exists(work + "/scans/lots/L7/lot.json"))
+rows = list(csv.DictReader(open(work + "/scans/lots/L7/foils.csv")))
+assert rows and all((row["die"], row["coil"], row["order"]) == ("B", "K7", "4711") for row in rows), rows
+assert "coil" not in open(work + "/scans/lots/L9/manifest.csv").readline()
 print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY

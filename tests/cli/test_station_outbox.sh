@@ -110,6 +110,7 @@ try:
     assert part["judgements"] and part["judgements"][0]["verdict"] == "fail", part["judgements"]
     assert json.loads(seen[arrived[0]]) == part and part["key"] == arrived[0]
     rows = list(csv.DictReader(open(f"{work}/csv/{files('csv')[0]}")))
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", rows[0]["date"]), rows[0]["date"]
     assert len(rows) == 1 and rows[0]["foil"] == "F 1", rows
     bumps = list(csv.DictReader(open(f"{work}/bumps/{files('bumps')[0]}")))
     of_part = {v["number"]: v["value"] for v in part["values"] if v["of"] == "bump" and v["name"] == "radius_mm"}

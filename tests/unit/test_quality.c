@@ -145,6 +145,29 @@ static void rules_end_where_they_should(void **state) {
   assert_string_equal(fg_run_rule_words(9), "");
 }
 
+/* Signals of a steady process, rule by rule, as often as stated. */
+static void chance_has_as_many_signals_as_stated(void **state) {
+  (void)state;
+  enum { POINTS = 400000 };
+  fg_context ctx;
+  fg_chart chart;
+  uint64_t seed = 5;
+  double *values = calloc(POINTS, sizeof *values);
+  for (int i = 0; i < POINTS; i++)
+    values[i] = random_gaussian(&seed);
+  for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++) {
+    in_row("rule %u", rule);
+    unsigned bit = 1u << (rule - 1);
+    assert_ok(&ctx, fg_chart_individuals(&ctx, values, POINTS, bit, &chart));
+    double stated = fg_chart_chance_signals(POINTS, bit);
+    assert_near((double)chart.signals, stated, 0.05 * stated + 8 * sqrt(stated) / 2);
+    fg_chart_free(&chart);
+  }
+  assert_near(fg_chart_chance_signals(200, 0x17), 2.25, 0.03);
+  assert_true(fg_chart_chance_signals(8, 0x02) == 0);
+  free(values);
+}
+
 static void limits_follow_the_subgroups(void **state) {
   (void)state;
   fg_context ctx;
@@ -407,6 +430,7 @@ int main(void) {
       cmocka_unit_test(equal_values_have_no_density),
       cmocka_unit_test(unbiasing_factors),
       cmocka_unit_test(rules_end_where_they_should),
+      cmocka_unit_test(chance_has_as_many_signals_as_stated),
       cmocka_unit_test(limits_follow_the_subgroups),
       cmocka_unit_test(piston_rings),
       cmocka_unit_test(capability_needs_stability),

@@ -49,8 +49,11 @@ static int start(void **state) {
   strcpy(f->station.host, "127.0.0.1:1");
   if (fg_station_database_open(&ctx, f->folder, &f->station.database) != FG_OK)
     fail_msg("%s", ctx.message);
-  run_sql(f, "INSERT INTO setups VALUES (1, 'x', 'v', '{}', NULL, NULL, 1);"
-             "INSERT INTO quantities VALUES (1, 'bump', 'radius_mm', 'mm'), (2, 'foil', "
+  char *recipe;
+  assert_ok(&ctx, fg_lot_settings_format(&ctx, &f->settings.lot, false, &recipe));
+  run_sql(f, "INSERT INTO setups VALUES (1, 'x', 'v', '%s', NULL, NULL, 1)", recipe);
+  free(recipe);
+  run_sql(f, "INSERT INTO quantities VALUES (1, 'bump', 'radius_mm', 'mm'), (2, 'foil', "
              "'thickness_mm', 'mm')");
   *state = f;
   return 0;
@@ -166,7 +169,7 @@ static void another_setup_is_marked_where_it_began(void **state) {
   fixture *f = *state;
   add_foils(f, 1, 40, "L1", 3.4);
   assert_has_not(get(f, "/trends", "", 200), "class=\"change\"");
-  run_sql(f, "INSERT INTO setups VALUES (2, 'y', 'v', '{}', NULL, 'm', 2);"
+  run_sql(f, "INSERT INTO setups SELECT 2, 'y', 'v', recipe, NULL, 'm', 2 FROM setups;"
              "UPDATE scans SET setup = 2 WHERE id >= 31");
   const char *page = get(f, "/trends", "", 200);
   assert_int_equal(count(page, "class=\"change\""), 2); /* wide and narrow */
@@ -182,12 +185,20 @@ static void capability_is_of_foils_of_one_recipe(void **state) {
   add_foils(f, 1, 60, "L1", 3.4);
   run_sql(f, "UPDATE foils SET lot = 'L2' WHERE id %% 3 = 0");
   assert_has(get(f, "/trends", "", 200), "<dt>Cpk</dt>");
-  run_sql(f, "INSERT INTO setups VALUES (2, 'y', 'v', '{\"a\": 1}', NULL, NULL, 2);"
-             "UPDATE scans SET setup = 2 WHERE id %% 3 = 0");
+  run_sql(f,
+          "INSERT INTO setups SELECT 2, 'y', 'v', replace(recipe, '3.3,', '3.25,'), NULL, NULL, 2"
+          " FROM setups;"
+          "UPDATE scans SET setup = 2 WHERE id %% 3 = 0");
   const char *page = get(f, "/trends", "", 200);
   assert_has(page, "Not stated: these foils were measured by more than one recipe");
   assert_has_not(page, "<dt>Cpk</dt>");
-  assert_has(get(f, "/trends", "lot=L1", 200), "<dt>Cpk</dt>");
+  assert_has(page, "Red: beyond the tolerance of the newest foil's recipe");
+  page = get(f, "/trends", "lot=L1", 200);
+  assert_has(page, "foils against 3.3 to 3.5.");
+  assert_has(page, "Red: beyond the tolerance of the design");
+  add_foils(f, 61, 120, "L3", 3.4);
+  run_sql(f, "UPDATE scans SET setup = 2 WHERE id > 60");
+  assert_has(get(f, "/trends", "lot=L3", 200), "foils against 3.25 to 3.5.");
 }
 
 static void a_crushed_bump_is_in_no_chart(void **state) {
@@ -257,6 +268,30 @@ static void lots_dies_and_single_bumps_are_chosen(void **state) {
   assert_has(get(f, "/trends", "q=foil:thickness_mm", 200), "0 foils with this quantity");
   get(f, "/trends", "q=bump:nothing", 404);
   get(f, "/trends", "q=bump:centre_mm", 404);
+}
+
+/* Scans of one foil say little of how foils vary, and do not narrow the limits of lots. */
+static void a_foil_counts_once_in_its_lot(void **state) {
+  fixture *f = *state;
+  char once[80];
+  for (int lot = 0; lot < 5; lot++)
+    add_foils(f, 1 + 4 * lot, 4 + 4 * lot, (const char *[]){"L1", "L2", "L3", "L4", "L5"}[lot],
+              3.4);
+  const char *page = get(f, "/trends", "by=lots", 200), *sigma = strstr(page, "(σ ");
+  assert_non_null(sigma);
+  snprintf(once, sizeof once, "%.*s", (int)strcspn(sigma, ")"), sigma);
+  for (int again = 1000; again <= 4000; again += 1000)
+    run_sql(f,
+            "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) SELECT id + %d,"
+            " sha256 || '-%d', setup, path, source, at, verdict FROM scans WHERE id <= 20;"
+            "INSERT INTO foils SELECT id + %d, scan + %d, number, serial, lot, die, operator,"
+            " verdict, reasons, coil, oven, scanner, order_id FROM foils WHERE id <= 20;"
+            "INSERT INTO measured SELECT quantity, foil + %d, bump, value, u FROM measured"
+            " WHERE foil <= 20",
+            again, again, again, again, again);
+  page = get(f, "/trends", "by=lots", 200);
+  assert_has(page, once);
+  assert_has(page, "5 lots, from L1 (no. 1)");
 }
 
 static void names_cannot_write_the_page(void **state) {
@@ -436,6 +471,7 @@ int main(void) {
       TEST(zooming_moves_no_limit_unless_asked_to),
       TEST(many_points_are_thinned_out_and_none_that_stands_out),
       TEST(lots_dies_and_single_bumps_are_chosen),
+      TEST(a_foil_counts_once_in_its_lot),
       TEST(names_cannot_write_the_page),
       TEST(a_check_is_due_and_done_and_due_again),
       TEST(a_changed_picture_withholds_until_it_is_accepted),

@@ -52,7 +52,8 @@ static fg_status add_item(fg_context *ctx, fg_manifest *manifest, const fg_part 
       [DISPOSITION] = part->disposition.kind,
       [REASON] = part->disposition.reason,
   };
-  fg_text_clip(date, sizeof date, "%.19s", part->measured_at); /* without its milliseconds */
+  /* Without its milliseconds; Z, as pages show local times. */
+  fg_text_clip(date, sizeof date, "%.19s%s", part->measured_at, part->measured_at[0] ? "Z" : "");
   FG_TRY(fg_manifest_add_item(ctx, manifest, &row));
   for (size_t i = 0; i < COLUMNS; i++)
     FG_TRY(fg_text_print(ctx, &row[i], "%s", cells[i]));
