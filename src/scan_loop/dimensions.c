@@ -7,10 +7,6 @@
 #include "core/memory.h"
 #include "scan_loop/state.h"
 
-/* Excess chi² of an explanation a hundred times less likely than the likeliest, 2 ln 100: the level
- * of the loop's claims. */
-#define UNLIKELY_CHI2 9.2
-
 static fg_status open_all(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(
       fg_memory_allocate(ctx, loop->scan_count, sizeof *loop->benefits, (void **)&loop->benefits));
@@ -54,7 +50,7 @@ double fg_scan_loop_excess_over_best(const fg_explanations *explanations, size_t
 }
 
 bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation) {
-  return fg_scan_loop_excess_over_best(explanations, explanation) > UNLIKELY_CHI2;
+  return fg_scan_loop_excess_over_best(explanations, explanation) > FG_UNLIKELY_CHI2;
 }
 
 static void add_scaled(fg_benefit *benefit, size_t item, double noise[FG_CORRECTED][FG_CORRECTED],

@@ -125,7 +125,6 @@ static fg_status fit_explanation(fg_context *ctx, void *shared, size_t item) {
 static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                           const fg_joint_fit_result *fit, fg_measurement *tried) {
   if (!fit->edge_fit) return FG_OK;
-  loop->unlikely[loop->tie_count] = fg_scan_loop_is_unlikely(&loop->explanations, explanation);
   loop->tie_excess[loop->tie_count] =
       fg_scan_loop_excess_over_best(&loop->explanations, explanation);
   loop->tie[loop->tie_count++] = fit->set;

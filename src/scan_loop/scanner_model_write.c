@@ -52,7 +52,7 @@ void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_sca
 static void take_ties(const fg_scan_loop *loop, fg_scanner_model *made) {
   double sum = made->weight[0] = exp(-0.5 * fg_scan_loop_excess_over_best(&loop->explanations, 0));
   for (size_t k = 0; k < loop->tie_count; k++) {
-    if (loop->unlikely[k]) continue;
+    if (loop->tie_excess[k] > FG_UNLIKELY_CHI2) continue;
     fg_effect_set_fields(&loop->edge_fit, &loop->tie[k], &made->other[made->others++]);
     made->weight[made->others] = exp(-0.5 * loop->tie_excess[k]);
     sum += made->weight[made->others];

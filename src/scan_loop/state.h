@@ -46,9 +46,9 @@ struct fg_scan_loop {
   bool tied;
   bool scale_tied;                        /* in scale_uncertainty.c */
   fg_effect_set tie[FG_EXPLANATIONS_MAX]; /* the other explanations, fitted */
-  bool unlikely[FG_EXPLANATIONS_MAX]; /* of the explanations: in the ranges, but without influence
-                                         on corrections */
-  double tie_excess[FG_EXPLANATIONS_MAX]; /* chi² over that of the likeliest */
+  /* Of each, chi² over that of the likeliest; above FG_UNLIKELY_CHI2 it is in the ranges, but has
+   * no influence on corrections. */
+  double tie_excess[FG_EXPLANATIONS_MAX];
   size_t tie_count;
   fg_scan_loop_range *
       *ranges;             /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
@@ -144,6 +144,10 @@ fg_status fg_scan_loop_correct_by_evidence(fg_context *ctx, const fg_scan_loop *
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);
 /* Writes the ranges of the dimensions of `after`, extended to the reported values. */
 void fg_scan_loop_put_ranges(fg_scan_loop *loop);
+
+/* Excess chi² of an explanation a hundred times less likely than the likeliest, 2 ln 100: the level
+ * of the loop's claims. */
+#define FG_UNLIKELY_CHI2 9.2
 
 /* Returns true for an explanation much less likely than the first. All tied sets leave no more than
  * allowed, but one may leave far more than another. Such a set widens the ranges, but corrects
