@@ -10,7 +10,7 @@
 #include "rows/scatter.h"
 
 /* Columns of one cause lie beside each other: near ones. */
-enum { FG_EVIDENCE_COLUMNS = 6000, FG_EVIDENCE_NEAR = 128 };
+enum { FG_EVIDENCE_COLUMNS = 7200, FG_EVIDENCE_NEAR = 128 };
 
 /* Rows [first, last) outside of which a column is 0: it may move one bump or one disc. */
 typedef struct fg_evidence_span {

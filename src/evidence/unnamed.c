@@ -122,10 +122,12 @@ static double band_in_y(const fg_field_frame *frame, size_t i, size_t count) {
   return band_along(frame, 1, i, count);
 }
 
-static void fill_band(const fg_field_frame *frame, int axis, double period_mm, fg_point at,
-                      double *values) {
-  double along = fg_point_along(at, axis), angle = 2 * M_PI * along / period_mm;
-  double u = 2 * (along - frame->low_mm[axis]) / span_along(frame, axis) - 1;
+/* A wave over one axis times an envelope over it or the other. */
+static void fill_band(const fg_field_frame *frame, int axis, int envelope_axis, double period_mm,
+                      fg_point at, double *values) {
+  double angle = 2 * M_PI * fg_point_along(at, axis) / period_mm;
+  double from = fg_point_along(at, envelope_axis) - frame->low_mm[envelope_axis];
+  double u = 2 * from / span_along(frame, envelope_axis) - 1;
   const double envelope[ENVELOPE] = {1, u, (3 * u * u - 1) / 2};
   for (int k = 0; k < ENVELOPE; k++) {
     values[2 * k] = envelope[k] * sin(angle);
@@ -133,17 +135,19 @@ static void fill_band(const fg_field_frame *frame, int axis, double period_mm, f
   }
 }
 
-#define BAND(name, over, moved_x, moved_y)                                                         \
+#define BAND(name, over, envelope_over, moved_x, moved_y)                                          \
   static void name(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {   \
     double values[BAND_NUMBERS];                                                                   \
-    fill_band(frame, over, shape[0], at, values);                                                  \
+    fill_band(frame, over, envelope_over, shape[0], at, values);                                   \
     for (int c = 0; c < BAND_NUMBERS; c++)                                                         \
       d[c] = (fg_point){(moved_x)*values[c], (moved_y)*values[c]};                                 \
   }
-BAND(x_band_over_x, 0, 1, 0)
-BAND(y_band_over_x, 0, 0, 1)
-BAND(x_band_over_y, 1, 1, 0)
-BAND(y_band_over_y, 1, 0, 1)
+BAND(x_band_over_x, 0, 0, 1, 0)
+BAND(y_band_over_x, 0, 0, 0, 1)
+BAND(x_band_over_y, 1, 1, 1, 0)
+BAND(y_band_over_y, 1, 1, 0, 1)
+BAND(x_slanted_over_y, 1, 0, 1, 0)
+BAND(y_slanted_over_y, 1, 0, 0, 1)
 
 /* ---- events: what happens to the carriage at one place, and settles behind it, there or elsewhere
  */
@@ -269,11 +273,11 @@ static size_t burr_of_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *r
   return 1;
 }
 
-#define BAND_ROW(name, over, thing, basis, from)                                                   \
+#define BAND_ROW(name, over, thing, basis, from, tried)                                            \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
     .moves = thing, .columns = BAND_NUMBERS, .shapes = 1, .shape_is = {FG_EFFECT_LENGTH},          \
-    .glass = basis, .axis = over, .start = from, .starts = BAND_PERIODS,                           \
+    .glass = basis, .axis = over, .start = from, .starts = tried,                                  \
     .size_from = "as of a wave, the change of its size less; assumed", .size_um = {                \
       10,                                                                                          \
       10,                                                                                          \
@@ -344,10 +348,16 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
     LENGTH_ROW("scan.x.dx as a wave", 0, "x", x_waves_over_x, 2, period_in_x, PERIODS),
     LENGTH_ROW("scan.x.dy as a wave", 0, "y", y_waves_over_x, 2, period_in_x, PERIODS),
     LENGTH_ROW("scan.y.dx as a wave", 1, "x", x_waves_over_y, 2, period_in_y, PERIODS),
-    BAND_ROW("scan.x.dx as a wave of changing size", 0, "x", x_band_over_x, band_in_x),
-    BAND_ROW("scan.x.dy as a wave of changing size", 0, "y", y_band_over_x, band_in_x),
-    BAND_ROW("scan.y.dx as a wave of changing size", 1, "x", x_band_over_y, band_in_y),
-    BAND_ROW("scan.y.dy as a wave of changing size", 1, "y", y_band_over_y, band_in_y),
+    BAND_ROW("scan.x.dx as a wave of changing size", 0, "x", x_band_over_x, band_in_x,
+             BAND_PERIODS),
+    BAND_ROW("scan.x.dy as a wave of changing size", 0, "y", y_band_over_x, band_in_x,
+             BAND_PERIODS),
+    BAND_ROW("scan.y.dx as a wave of changing size", 1, "x", x_band_over_y, band_in_y,
+             BAND_PERIODS),
+    BAND_ROW("scan.y.dy as a wave of changing size", 1, "y", y_band_over_y, band_in_y,
+             BAND_PERIODS),
+    BAND_ROW("scan.y.dx as a slanted wave", 1, "x", x_slanted_over_y, period_in_y, PERIODS),
+    BAND_ROW("scan.y.dy as a slanted wave", 1, "y", y_slanted_over_y, period_in_y, PERIODS),
     EVENT_ROW("scan.y.dx as an event", "x", x_event_over_y),
     EVENT_ROW("scan.y.dy as an event", "y", y_event_over_y),
     PULSE_ROW("scan.x.dx as a pulse", 0, "x", x_pulse_over_x, pulse_grid_x),

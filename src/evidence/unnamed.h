@@ -13,7 +13,7 @@
 #include "effect/effect.h"
 
 /* The rows, in the form of effects, which no report names; NULL-terminated by id. */
-enum { FG_UNNAMED_EFFECTS = 24 };
+enum { FG_UNNAMED_EFFECTS = 26 };
 extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
 
 /* Returns false on discs for lines that are broken along their own way: there a slope and a jump
