@@ -11,8 +11,8 @@
 enum { STARTS = 24, PERIODS = 48, BROKEN_NUMBERS = 3 };
 /* A wave of changing size is wider in frequency than one cycle over the picture. */
 enum { BAND_PERIODS = 24, ENVELOPE = 3, BAND_NUMBERS = 2 * ENVELOPE };
-enum { JOINTS = 40, EVENT_LENGTHS = 3, EVENT_PLACES = 24, EVENT_NUMBERS = 3, JOINT_NUMBERS = 2 };
-enum { PULSE_LENGTHS = 3, PULSE_PLACES = 40 };
+enum { JOINTS = 40, JOINT_NUMBERS = 2 };
+enum { LENGTHS = 3, EVENT_PLACES = 24, EVENT_NUMBERS = 3, PULSE_PLACES = 40 };
 enum { SPOT_STARTS = 96, SPOT_NUMBERS = 2 };
 enum { BURR_WIDTHS = 2, BURR_PLACES = 288, BURR_DISCS_MAX = 20 };
 
@@ -152,15 +152,20 @@ BAND(y_slanted_over_y, 1, 0, 0, 1)
 /* ---- events: what happens to the carriage at one place, and settles behind it, there or elsewhere
  */
 
+/* Every length at every place along an axis. */
+static void place_grid(const fg_edge_fit *edge_fit, int axis, const double lengths[LENGTHS],
+                       double reach_share, size_t i, size_t count, double *shape, double *reach) {
+  size_t places = count / LENGTHS;
+  shape[0] = start_along(&edge_fit->frame, axis, i / LENGTHS, places);
+  shape[1] = lengths[i % LENGTHS];
+  reach[0] = span_along(&edge_fit->frame, axis) / (double)(places + 1);
+  reach[1] = reach_share * shape[1];
+}
+
 static void event_grid(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
                        double *reach) {
-  static const double lengths[EVENT_LENGTHS] = {0.6, 1.8, 5.4};
-  const fg_field_frame *frame = &edge_fit->frame;
-  size_t places = count / EVENT_LENGTHS;
-  shape[0] = start_along(frame, 1, i / EVENT_LENGTHS, places);
-  shape[1] = lengths[i % EVENT_LENGTHS];
-  reach[0] = span_along(frame, 1) / (double)(places + 1);
-  reach[1] = 0.7 * shape[1];
+  static const double lengths[LENGTHS] = {0.6, 1.8, 5.4};
+  place_grid(edge_fit, 1, lengths, 0.7, i, count, shape, reach);
 }
 
 #define EVENT(name, moved_x, moved_y)                                                              \
@@ -180,13 +185,8 @@ EVENT(y_event_over_y, 0, 1)
 
 static void pulse_grid(const fg_edge_fit *edge_fit, int axis, size_t i, size_t count, double *shape,
                        double *reach) {
-  static const double lengths[PULSE_LENGTHS] = {0.4, 0.9, 2};
-  const fg_field_frame *frame = &edge_fit->frame;
-  size_t places = count / PULSE_LENGTHS;
-  shape[0] = start_along(frame, axis, i / PULSE_LENGTHS, places);
-  shape[1] = lengths[i % PULSE_LENGTHS];
-  reach[0] = span_along(frame, axis) / (double)(places + 1);
-  reach[1] = 0.5 * shape[1];
+  static const double lengths[LENGTHS] = {0.4, 0.9, 2};
+  place_grid(edge_fit, axis, lengths, 0.5, i, count, shape, reach);
 }
 
 static void pulse_grid_x(const fg_edge_fit *edge_fit, size_t i, size_t count, double *shape,
@@ -291,7 +291,7 @@ static size_t burr_of_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *r
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = FG_EFFECT_Y, .moves = thing,             \
     .columns = EVENT_NUMBERS, .shapes = 2, .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_LENGTH},        \
-    .glass = basis, .axis = 1, .grid = event_grid, .starts = EVENT_LENGTHS * EVENT_PLACES,         \
+    .glass = basis, .axis = 1, .grid = event_grid, .starts = LENGTHS * EVENT_PLACES,               \
     .jumps = true, .size_from = "as of a lost row; assumed", .size_um = {                          \
       15                                                                                           \
     }                                                                                              \
@@ -301,7 +301,7 @@ static size_t burr_of_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *r
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
     .moves = thing, .columns = 1, .shapes = 2, .shape_is = {FG_EFFECT_PLACE, FG_EFFECT_LENGTH},    \
-    .glass = basis, .axis = over, .grid = from, .starts = PULSE_LENGTHS * PULSE_PLACES,            \
+    .glass = basis, .axis = over, .grid = from, .starts = LENGTHS * PULSE_PLACES,                  \
     .size_from = "as of a lost row; assumed", .size_um = {                                         \
       15                                                                                           \
     }                                                                                              \

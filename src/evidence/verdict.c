@@ -325,9 +325,15 @@ static tie_range choose_range(const fg_evidence_search *s, double named, double 
   return (tie_range){score - FG_EVIDENCE_LEAD, nameless};
 }
 
-static double find_best_without(const fg_evidence_search *s, const fg_effect *effect) {
-  for (size_t m = 0; m < s->count; m++) /* sorted */
-    if (!fg_evidence_holds(&s->models[m], effect)) return s->models[m].score;
+/* Returns the score of the likeliest model without any of `count` effects. */
+static double find_score_without(const fg_evidence_search *s, const fg_effect *const *effects,
+                                 size_t count) {
+  for (size_t m = 0; m < s->count; m++) { /* sorted */
+    size_t e = 0;
+    while (e < count && !fg_evidence_holds(&s->models[m], effects[e]))
+      e++;
+    if (e == count) return s->models[m].score;
+  }
   return -INFINITY;
 }
 
@@ -351,22 +357,20 @@ static void find_certain(const fg_evidence_search *s, double margin, fg_evidence
     const fg_effect *effect = model->part[k]->effect;
     v->certain[k] = fg_effect_bears_name(effect) && effect->jumps &&
                     !holds_rival_over(model, effect->axis) &&
-                    find_best_without(s, effect) < model->score - gain_min;
+                    find_score_without(s, &effect, 1) < model->score - gain_min;
   }
 }
 
 /* Returns the score of the likeliest model without the named effects of tie[0] but for the certain
  * ones. */
-static double find_score_without(const fg_evidence_search *s, const fg_evidence_verdict *v) {
-  const fg_evidence_model *model = &v->tie[0];
-  for (size_t m = 0; m < s->count; m++) { /* sorted */
-    bool holds = false;
-    for (size_t k = 0; k < model->parts && !holds; k++)
-      holds = !v->certain[k] && fg_effect_bears_name(model->part[k]->effect) &&
-              fg_evidence_holds(&s->models[m], model->part[k]->effect);
-    if (!holds) return s->models[m].score;
+static double score_without_names(const fg_evidence_search *s, const fg_evidence_verdict *v) {
+  const fg_effect *effects[FG_EVIDENCE_PARTS];
+  size_t count = 0;
+  for (size_t k = 0; k < v->tie[0].parts; k++) {
+    const fg_effect *effect = v->tie[0].part[k]->effect;
+    if (!v->certain[k] && fg_effect_bears_name(effect)) effects[count++] = effect;
   }
-  return -INFINITY;
+  return find_score_without(s, effects, count);
 }
 
 /* Sharp edges show errors of the columns themselves: a set of named effects is adequate up to a
@@ -388,7 +392,7 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
                : v->ties > 1    ? FG_EVIDENCE_TIED
                                 : FG_EVIDENCE_FOUND;
   if (v->outcome == FG_EVIDENCE_UNATTRIBUTED) find_certain(s, margin, v);
-  v->score_without = find_score_without(s, v);
+  v->score_without = score_without_names(s, v);
   return FG_OK;
 }
 
