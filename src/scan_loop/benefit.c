@@ -137,19 +137,18 @@ void fg_benefits_add(fg_benefits *benefits, const fg_measurement *before,
   add_discs(&benefits->discs, before, corrected);
 }
 
-static void weigh(fg_benefit *benefit, const double *weight, size_t count, bool curve, bool loose) {
+static void weigh(fg_benefit *benefit, const fg_benefit_weights *weights) {
   benefit->mean = true;
-  benefit->curve = curve;
-  benefit->misfit = loose;
+  benefit->curve = weights->curve;
+  benefit->misfit = weights->loose;
   for (size_t e = 0; e < FG_BENEFIT_EXPLANATIONS_MAX; e++)
-    benefit->weight[e] = e < count ? weight[e] : 0;
+    benefit->weight[e] = e < weights->count ? weights->weight[e] : 0;
 }
 
-void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve,
-                       bool loose) {
+void fg_benefits_weigh(fg_benefits *benefits, const fg_benefit_weights *weights) {
   for (size_t f = 0; f < benefits->foils; f++)
-    weigh(&benefits->foil[f], weight, count, curve, loose);
-  weigh(&benefits->discs, weight, count, curve, loose);
+    weigh(&benefits->foil[f], weights);
+  weigh(&benefits->discs, weights);
 }
 
 double fg_benefit_weight(const fg_benefit *benefit, size_t explanation) {

@@ -73,10 +73,14 @@ typedef struct fg_benefits {
 fg_status fg_benefits_open(fg_context *ctx, const fg_measurement *before, fg_benefits *benefits);
 void fg_benefits_close(fg_benefits *benefits);
 
-/* Sets the weights that evidence gives the explanations, in the order in which they are added, and
- * what the one in force holds: a free curve, one that is loose. */
-void fg_benefits_weigh(fg_benefits *benefits, const double *weight, size_t count, bool curve,
-                       bool loose);
+/* Weights that evidence gives the explanations, in the order in which they are added. */
+typedef struct fg_benefit_weights {
+  const double *weight;
+  size_t count;
+  bool curve, loose; /* the explanation in force holds a free curve; one that is loose */
+} fg_benefit_weights;
+
+void fg_benefits_weigh(fg_benefits *benefits, const fg_benefit_weights *weights);
 /* Returns the share of one explanation in the mean. */
 double fg_benefit_weight(const fg_benefit *benefit, size_t explanation);
 

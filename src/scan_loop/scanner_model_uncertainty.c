@@ -236,13 +236,13 @@ static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_
 }
 
 static void weigh(const fg_scanner_model *model, fg_benefits *benefits) {
-  bool curve = false, loose = false;
+  fg_benefit_weights weights = {.weight = model->weight, .count = model->weights};
   for (size_t f = 0; f < model->fields.count; f++) {
     const fg_effect *effect = fg_effect_find(model->fields.fields[f].id);
-    curve = curve || (effect && fg_effect_is_free(effect));
-    loose = loose || (effect && effect->loose);
+    weights.curve = weights.curve || (effect && fg_effect_is_free(effect));
+    weights.loose = weights.loose || (effect && effect->loose);
   }
-  fg_benefits_weigh(benefits, model->weight, model->weights, curve, loose);
+  fg_benefits_weigh(benefits, &weights);
 }
 
 fg_status fg_model_uncertainty_open(fg_context *ctx, const fg_scanner_model *model,

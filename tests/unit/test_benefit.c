@@ -137,7 +137,8 @@ static void evidence_weighs_explanations(void **state) {
     fg_benefits all = {.discs = benefit};
     fg_benefit_decision decision;
     double move[FG_CORRECTED], moment[FG_CORRECTED][FG_CORRECTED];
-    fg_benefits_weigh(&all, (const double[]){ties[i].weight, 1 - ties[i].weight}, 2, false, false);
+    const double weight[] = {ties[i].weight, 1 - ties[i].weight};
+    fg_benefits_weigh(&all, &(fg_benefit_weights){weight, 2, .curve = false});
     explain(&all.discs, 10, 10, 10);
     explain(&all.discs, 0, 0, 0);
     decide(&all.discs, &decision);
@@ -147,7 +148,7 @@ static void evidence_weighs_explanations(void **state) {
       assert_near(move[k], ties[i].moved * UM, 1e-9);
       assert_near(moment[k][k], ties[i].moment * UM * UM, 1e-12);
     }
-    fg_benefits_weigh(&all, (const double[]){ties[i].weight, 1 - ties[i].weight}, 2, true, true);
+    fg_benefits_weigh(&all, &(fg_benefit_weights){weight, 2, .curve = true, .loose = true});
     decide(&all.discs, &decision);
     if (ties[i].weight > 0) assert_false(fg_benefit_is_moved(decision.choice)); /* a loose curve */
   }
