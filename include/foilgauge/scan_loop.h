@@ -93,6 +93,7 @@ typedef struct fg_scanner_model_facts {
   double low_mm[2], high_mm[2]; /* its region of the glass */
   fg_scanner_model_effect effect[FG_SCANNER_MODEL_EFFECTS];
   size_t effects;
+  double map_half_range_um; /* of its map, in its region; NaN: none */
 } fg_scanner_model_facts;
 void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_facts *facts);
 const char *fg_scanner_model_sha256(const fg_scanner_model *model);

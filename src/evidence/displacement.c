@@ -15,7 +15,6 @@
 /* Weight of a model that the likeliest leads by FG_EVIDENCE_LEAD: models that a verdict does not
  * tell apart have weight. */
 #define WEIGHT_AT_MARGIN 0.1
-enum { MODELS_MAX = 48 };
 
 fg_point fg_displacement_at(const fg_displacement *d, fg_point at) {
   fg_point each[FG_RIVAL_COLUMNS], sum = {0, 0};
@@ -75,13 +74,12 @@ static void add_mean(const fg_evidence_search *s, const fg_evidence_model *model
   }
 }
 
-/* Occam's window (Madigan and Raftery 1994): models that are not far less likely than the best, and
- * include none that is likelier. */
-static size_t list_window(const fg_evidence_search *s, const fg_evidence_model **list, bool decided,
-                          double *weight) {
+size_t fg_evidence_list_window(const fg_evidence_search *s, bool decided,
+                               const fg_evidence_model *list[FG_EVIDENCE_WINDOW],
+                               double weight[FG_EVIDENCE_WINDOW]) {
   double per_nat = decided ? 1 : log(1 / WEIGHT_AT_MARGIN) / FG_EVIDENCE_LEAD, total = 0;
   size_t count = 0;
-  for (size_t m = 0; m < s->count && count < MODELS_MAX; m++) {
+  for (size_t m = 0; m < s->count && count < FG_EVIDENCE_WINDOW; m++) {
     const fg_evidence_model *model = &s->models[m];
     double below = per_nat * (s->models[0].score - model->score);
     bool more = false;
@@ -100,10 +98,10 @@ static size_t list_window(const fg_evidence_search *s, const fg_evidence_model *
 fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *s, bool decided,
                                         fg_displacement *d, fg_displacement_part *parts) {
   fg_evidence_shift shift;
-  const fg_evidence_model *model[MODELS_MAX];
-  double weight[MODELS_MAX];
+  const fg_evidence_model *model[FG_EVIDENCE_WINDOW];
+  double weight[FG_EVIDENCE_WINDOW];
   fg_status status = FG_OK;
-  size_t models = list_window(s, model, decided, weight);
+  size_t models = fg_evidence_list_window(s, decided, model, weight);
   *d = (fg_displacement){.frame = s->problem.edge_fit->frame};
   FG_TRY(fg_evidence_shift_open(ctx, s, &shift));
   for (size_t m = 0; m < models && status == FG_OK; m++) {

@@ -24,6 +24,13 @@ typedef struct fg_displacement {
   size_t rivals;
 } fg_displacement;
 
+/* Occam's window (Madigan and Raftery 1994): lists the models that are not far less likely than the
+ * best and include none that is likelier, with their weights, sum 1. `decided` as below. */
+enum { FG_EVIDENCE_WINDOW = 48 };
+size_t fg_evidence_list_window(const fg_evidence_search *search, bool decided,
+                               const fg_evidence_model *list[FG_EVIDENCE_WINDOW],
+                               double weight[FG_EVIDENCE_WINDOW]);
+
 /* Returns the displacement of a place on the glass, mm. */
 fg_point fg_displacement_at(const fg_displacement *displacement, fg_point at);
 

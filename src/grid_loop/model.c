@@ -2,10 +2,8 @@
 /* The scanner's model of a loop on grids. Its uncertainty is that of effects and map together: the
  * principal modes of their covariance over the region, as maps. */
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,31 +11,12 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "field/map_fit.h"
 #include "grid_loop/grid_loop.h"
 
-/* Places of the region per spline and axis, at which displacements are compared; modes kept. */
-enum { PLACES_PER_SPLINE = 2, MODES_KEPT = 30, REST_MODES = 16, RANDOM_MODES = 4 };
-_Static_assert((int)MODES_KEPT + (int)REST_MODES + (int)RANDOM_MODES <= (int)FG_MAP_MODES_MAX,
+enum { RANDOM_MODES = 4 };
+_Static_assert((int)FG_MAP_PRINCIPAL_MODES + (int)RANDOM_MODES <= (int)FG_MAP_MODES_MAX,
                "a model that is written can be read");
-#define RIDGE 1e-9
-
-/* Places over a map's region. */
-typedef struct map_places {
-  fg_point *at; /* owned */
-  size_t count;
-} map_places;
-
-static fg_status list_map_places(fg_context *ctx, const fg_map_frame *frame, map_places *places) {
-  size_t nx = PLACES_PER_SPLINE * frame->side[0], ny = PLACES_PER_SPLINE * frame->side[1];
-  places->count = nx * ny;
-  FG_TRY(fg_memory_allocate(ctx, places->count, sizeof *places->at, (void **)&places->at));
-  for (size_t k = 0; k < places->count; k++) {
-    double x = (double)(k % nx) / (double)(nx - 1), y = (double)(k / nx) / (double)(ny - 1);
-    places->at[k] = (fg_point){frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
-                               frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
-  }
-  return FG_OK;
-}
 
 /* A ripple or step is no smooth displacement: its numbers keep their own uncertainty. */
 static bool is_smooth(const fg_effect *kind) {
@@ -46,18 +25,16 @@ static bool is_smooth(const fg_effect *kind) {
 
 typedef struct mode_work {
   const fg_grid_loop *loop;
-  map_places places;
+  fg_map_fit fit;
   size_t first, count; /* columns of effects and map */
   gsl_matrix *factor;  /* L of their covariance, without placed effects */
   gsl_matrix *moves;   /* 2 places × count: displacement by L's columns */
-  gsl_matrix *splines; /* factored normal matrix of splines at the places */
 } mode_work;
 
 static void free_mode_work(mode_work *work) {
-  free(work->places.at);
+  fg_map_fit_close(&work->fit);
   gsl_matrix_free(work->factor);
   gsl_matrix_free(work->moves);
-  gsl_matrix_free(work->splines);
 }
 
 static fg_status factor_covariance(fg_context *ctx, mode_work *work) {
@@ -93,7 +70,7 @@ static fg_status factor_covariance(fg_context *ctx, mode_work *work) {
 
 static fg_status find_moves_of_columns(fg_context *ctx, mode_work *work) {
   const fg_grid_loop *loop = work->loop;
-  size_t rows = 2 * work->places.count, index[GRID_ROW_MAX];
+  size_t rows = 2 * work->fit.places, index[GRID_ROW_MAX];
   fg_point value[GRID_ROW_MAX];
   gsl_matrix *columns = gsl_matrix_calloc(rows, work->count);
   work->moves = gsl_matrix_calloc(rows, work->count);
@@ -101,9 +78,9 @@ static fg_status find_moves_of_columns(fg_context *ctx, mode_work *work) {
     gsl_matrix_free(columns);
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", work->count);
   }
-  for (size_t p = 0; p < work->places.count; p++) {
+  for (size_t p = 0; p < work->fit.places; p++) {
     size_t n = fg_grid_displacement_columns(&loop->problem, &loop->solution.columns,
-                                            work->places.at[p], index, value);
+                                            work->fit.at[p], index, value);
     for (size_t k = 0; k < n; k++) {
       gsl_matrix_set(columns, 2 * p, index[k] - work->first, value[k].x);
       gsl_matrix_set(columns, 2 * p + 1, index[k] - work->first, value[k].y);
@@ -114,123 +91,21 @@ static fg_status find_moves_of_columns(fg_context *ctx, mode_work *work) {
   return FG_OK;
 }
 
-static fg_status factor_splines(fg_context *ctx, const fg_map_frame *frame, mode_work *work) {
-  size_t n = fg_map_splines(frame);
-  fg_map_weight weights[FG_MAP_WEIGHTS];
-  work->splines = gsl_matrix_calloc(n, n);
-  if (!work->splines) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu splines", n);
-  for (size_t p = 0; p < work->places.count; p++) {
-    fg_map_weigh(frame, work->places.at[p], weights);
-    for (int a = 0; a < FG_MAP_WEIGHTS; a++)
-      for (int b = 0; b < FG_MAP_WEIGHTS; b++)
-        *gsl_matrix_ptr(work->splines, weights[a].spline, weights[b].spline) +=
-            weights[a].value * weights[b].value;
-  }
-  for (size_t k = 0; k < n; k++)
-    *gsl_matrix_ptr(work->splines, k, k) += RIDGE;
-  if (gsl_linalg_cholesky_decomp1(work->splines))
-    return fg_fail(ctx, FG_ERR_NUMERIC, "the map's splines cannot be fitted");
-  return FG_OK;
-}
-
-/* Splines of a displacement that is given at the places (x and y by turns). */
-static void fit_splines(const fg_map_frame *frame, const mode_work *work, const double *moves,
-                        size_t component, double *mm) {
-  size_t n = fg_map_splines(frame);
-  fg_map_weight weights[FG_MAP_WEIGHTS];
-  gsl_vector_view right = gsl_vector_view_array(mm + component * n, n);
-  memset(mm + component * n, 0, n * sizeof *mm);
-  for (size_t p = 0; p < work->places.count; p++) {
-    fg_map_weigh(frame, work->places.at[p], weights);
-    for (int k = 0; k < FG_MAP_WEIGHTS; k++)
-      mm[component * n + weights[k].spline] += weights[k].value * moves[2 * p + component];
-  }
-  gsl_linalg_cholesky_svx(work->splines, &right.vector);
-}
-
-/* Appends a mode from displacements at the places. */
-static fg_status add_mode(fg_context *ctx, const mode_work *work, const double *moves,
-                          fg_field_map *map) {
-  double **mm = &map->modes[map->mode_count];
-  FG_TRY(fg_memory_allocate(ctx, 2 * fg_map_splines(&map->frame), sizeof **mm, (void **)mm));
-  map->mode_count++;
-  for (size_t component = 0; component < 2; component++)
-    fit_splines(&map->frame, work, moves, component, *mm);
-  return FG_OK;
-}
-
-/* Sign of a mode in a mixture, which looks random: the last bit of splitmix64 (Steele 2014). */
-static double sign_of_mode(size_t mode, size_t mixture) {
-  uint64_t bits =
-      (mode + 1) * UINT64_C(0x9E3779B97F4A7C15) + mixture * UINT64_C(0xD1B54A32D192ED03);
-  bits = (bits ^ (bits >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-  bits = (bits ^ (bits >> 27)) * UINT64_C(0x94D049BB133111EB);
-  return (bits >> 63) ? 1 : -1;
-}
-
-/* Columns of `mixtures`: the first `kept` vectors one by one; the others, which are short waves and
- * many, in mixtures with random signs. Whatever is measured, the squares of its moves by mixtures
- * have the expectation that those by the vectors have (Hutchinson 1989). */
-static void mix_modes(const gsl_matrix *vectors, size_t kept, gsl_matrix *mixtures) {
-  size_t n = vectors->size2, mixed = mixtures->size2 - kept;
-  for (size_t k = 0; k < n; k++) {
-    gsl_vector_const_view vector = gsl_matrix_const_column(vectors, k);
-    for (size_t m = k < kept ? k : kept; m < (k < kept ? k + 1 : mixtures->size2); m++) {
-      double weight = k < kept ? 1 : sign_of_mode(k, m) / sqrt((double)mixed);
-      gsl_vector_view mixture = gsl_matrix_column(mixtures, m);
-      gsl_blas_daxpy(weight, &vector.vector, &mixture.vector);
-    }
-  }
-}
-
-/* Modes of the moves: the eigenvectors of movesᵀ moves with the largest variance, and mixtures of
- * the others. */
-static fg_status add_principal_modes(fg_context *ctx, const mode_work *work, fg_field_map *map) {
-  size_t n = work->count, kept = n < MODES_KEPT ? n : MODES_KEPT;
-  size_t modes = n > kept ? kept + REST_MODES : kept;
-  gsl_matrix *square = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_calloc(n, n);
-  gsl_matrix *mixtures = gsl_matrix_calloc(n, modes);
-  gsl_vector *values = gsl_vector_calloc(n), *mode = gsl_vector_calloc(2 * work->places.count);
-  gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(n);
-  fg_status status = FG_OK;
-  if (!square || !vectors || !mixtures || !values || !mode || !space) {
-    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu columns", n);
-    goto exit;
-  }
-  gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, work->moves, work->moves, 0, square);
-  gsl_eigen_symmv(square, values, vectors, space);
-  gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
-  mix_modes(vectors, kept, mixtures);
-  for (size_t k = 0; k < modes; k++) {
-    gsl_vector_const_view mixture = gsl_matrix_const_column(mixtures, k);
-    gsl_blas_dgemv(CblasNoTrans, 1, work->moves, &mixture.vector, 0, mode);
-    FG_TRY_EXIT(add_mode(ctx, work, mode->data, map));
-  }
-exit:
-  gsl_matrix_free(square);
-  gsl_matrix_free(vectors);
-  gsl_matrix_free(mixtures);
-  gsl_vector_free(values);
-  gsl_vector_free(mode);
-  gsl_eigen_symmv_free(space);
-  return status;
-}
-
 /* The carriage's random part differs from scan to scan: cosines over its travel, of equal variance.
  */
 static fg_status add_random_modes(fg_context *ctx, const mode_work *work, fg_field_map *map) {
   double um = work->loop->result.carriage_um, *moves;
   if (!(um > 0)) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, 2 * work->places.count, sizeof *moves, (void **)&moves));
+  FG_TRY(fg_memory_allocate(ctx, 2 * work->fit.places, sizeof *moves, (void **)&moves));
   fg_status status = FG_OK;
   for (int k = 1; k <= RANDOM_MODES && status == FG_OK; k++) {
-    for (size_t p = 0; p < work->places.count; p++) {
-      double v = (work->places.at[p].y - map->frame.low_mm[1]) /
+    for (size_t p = 0; p < work->fit.places; p++) {
+      double v = (work->fit.at[p].y - map->frame.low_mm[1]) /
                  (map->frame.high_mm[1] - map->frame.low_mm[1]);
       moves[2 * p] = 0;
       moves[2 * p + 1] = um / 1000 * sqrt(2.0 / RANDOM_MODES) * cos(k * M_PI * v);
     }
-    status = add_mode(ctx, work, moves, map);
+    status = fg_map_fit_add_mode(ctx, &work->fit, moves, map);
   }
   free(moves);
   return status;
@@ -247,11 +122,10 @@ static fg_status make_map(fg_context *ctx, fg_grid_loop *loop, fg_scanner_model 
   FG_TRY_EXIT(fg_memory_allocate(ctx, numbers, sizeof *map->mm, (void **)&map->mm));
   for (size_t k = 0; k < numbers; k++)
     map->mm[k] = gsl_vector_get(loop->solution.estimate, columns->map + k);
-  FG_TRY_EXIT(list_map_places(ctx, &map->frame, &work.places));
+  FG_TRY_EXIT(fg_map_fit_open(ctx, &map->frame, &work.fit));
   FG_TRY_EXIT(factor_covariance(ctx, &work));
   FG_TRY_EXIT(find_moves_of_columns(ctx, &work));
-  FG_TRY_EXIT(factor_splines(ctx, &map->frame, &work));
-  FG_TRY_EXIT(add_principal_modes(ctx, &work, map));
+  FG_TRY_EXIT(fg_map_fit_add_principal_modes(ctx, &work.fit, work.moves, map));
   FG_TRY_EXIT(add_random_modes(ctx, &work, map));
   model->fields.map = &map->frame;
   model->fields.map_mm = map->mm;

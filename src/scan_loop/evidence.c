@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "effect_search/iterate.h"
+#include "evidence/displacement_map.h"
 #include "evidence/unnamed.h"
 #include "evidence/unseen.h"
 #include "evidence/verdict.h"
@@ -241,6 +242,15 @@ static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
   return FG_OK;
 }
 
+/* A plate whose cause has no name corrects other scans by a map: its curve alone would not hold
+ * what the picture does beside it. */
+static fg_status find_map(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
+                          const fg_evidence_verdict *v) {
+  fg_field_map_free(&loop->map);
+  if (!loop->edge_fit.discs || v->outcome != FG_EVIDENCE_UNATTRIBUTED) return FG_OK;
+  return fg_evidence_find_map(ctx, search, &loop->displacement, &loop->map);
+}
+
 static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
                                    bool decided) {
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->displacement_parts));
@@ -435,6 +445,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_what_fits(ctx, loop, &search, &verdict, moved));
+  FG_TRY_EXIT(find_map(ctx, loop, &search, &verdict));
   *moved = *moved && search.problem.large;
 exit:
   fg_evidence_search_close(&search);

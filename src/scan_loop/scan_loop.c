@@ -401,6 +401,7 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
   fg_scan_result_free(&loop->result);
   free_parts(loop, loop->displacement_parts);
   free_parts(loop, loop->unseen_parts);
+  fg_field_map_free(&loop->map);
   free(loop->form_errors);
   fg_edge_fit_free(&loop->edge_fit);
   fg_scan_loop_bumps_free(&loop->bumps);

@@ -24,6 +24,23 @@ static double half_range_um(const fg_field_list *list, size_t index) {
   return 500 * fmax(high.x - low.x, high.y - low.y);
 }
 
+/* Likewise, of the map; NaN: there is none. */
+static double map_half_range_um(const fg_scanner_model *model) {
+  const fg_map_frame *frame = model->fields.map;
+  if (!frame) return NAN;
+  enum { GRID = 33 };
+  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
+  for (int i = 0; i < GRID * GRID; i++) {
+    double x = i % GRID / (GRID - 1.0), y = i / GRID / (GRID - 1.0);
+    fg_point at = {frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
+                   frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
+    fg_point d = fg_map_at(frame, model->fields.map_mm, at);
+    low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
+    high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
+  }
+  return 500 * fmax(high.x - low.x, high.y - low.y);
+}
+
 static fg_effect_found effect_of(const fg_field *field) {
   fg_effect_found effect = {
       .kind = fg_effect_find(field->id), .columns = field->columns, .shapes = field->shapes};
@@ -57,6 +74,7 @@ void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_f
                                     .known_diameters = model->known_diameters,
                                     .known_grids = model->known_grids,
                                     .tied = model->tied,
+                                    .map_half_range_um = map_half_range_um(model),
                                     .temperature_c = model->temperature_c,
                                     .low_mm = {frame->low_mm[0], frame->low_mm[1]},
                                     .high_mm = {frame->high_mm[0], frame->high_mm[1]}};

@@ -64,8 +64,39 @@ static void take_ties(const fg_scan_loop *loop, fg_scanner_model *made) {
     made->weight[k] /= sum;
 }
 
+static fg_status copy_numbers(fg_context *ctx, const double *from, size_t count, double **to) {
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof **to, (void **)to));
+  memcpy(*to, from, count * sizeof **to);
+  return FG_OK;
+}
+
+static fg_status copy_map(fg_context *ctx, const fg_field_map *from, fg_field_map *to) {
+  size_t numbers = 2 * fg_map_splines(&from->frame);
+  to->frame = from->frame;
+  FG_TRY(copy_numbers(ctx, from->mm, numbers, &to->mm));
+  for (; to->mode_count < from->mode_count; to->mode_count++)
+    FG_TRY(copy_numbers(ctx, from->modes[to->mode_count], numbers, &to->modes[to->mode_count]));
+  return FG_OK;
+}
+
+/* A map stands for all fields of the set, and for the explanations tied with it. */
+static fg_status take_map(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model *made) {
+  fg_effect_set none = {.count = 0};
+  FG_TRY(copy_map(ctx, &loop->map, &made->map));
+  fg_effect_set_fields(&loop->edge_fit, &none, &made->fields);
+  made->fields.map = &made->map.frame;
+  made->fields.map_mm = made->map.mm;
+  return FG_OK;
+}
+
+static void take_fields(const fg_scan_loop *loop, fg_scanner_model *made) {
+  fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
+  take_ties(loop, made);
+}
+
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model) {
   fg_scanner_model *made = NULL;
+  fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
   if (loop->options.scanner)
     fg_text_clip(made->scanner, sizeof made->scanner, "%s", loop->options.scanner);
@@ -78,11 +109,13 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   made->artefact = first->design.artefact;
   fg_scanner_model_take_temperature(&first->design.calibration, made);
   made->tone = loop->tone;
-  fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
+  if (loop->map.mm)
+    status = take_map(ctx, loop, made);
+  else
+    take_fields(loop, made);
   add_uncertain_scale(loop->u_scale, &made->fields);
-  take_ties(loop, made);
   *model = made;
-  return FG_OK;
+  return status;
 }
 
 /* ---- the file ---- */
@@ -271,8 +304,10 @@ static const fg_member model_rows[] = {
      .words = "level of the scanner's edges, from discs of known diameter; null or absent: not "
               "known"},
     {FG_PART("map", find_map_of_model, &map_members), .present = is_in_every_model,
-     .words = "smooth displacement of the bed beside the effects, from scans of grids; null or "
-              "absent: none"},
+     .words =
+         "smooth displacement beside the effects, from scans of grids, or of discs whose cause has "
+         "no name; null or "
+         "absent: none"},
     {FG_FLAG("tied", fg_scanner_model, tied), .words = "other explanations did as well"},
     {FG_ARRAY("fields", fg_scanner_model, fields.fields, fields.count, &field_members),
      .highest = FG_FIELDS_MAX,

@@ -37,8 +37,9 @@ struct fg_scan_loop {
                                    from which a deviation counts; 0: none */
   bool misfit; /* no model follows all of the residual, or the foil alone may be the cause */
   bool beside_foil_field; /* one scan: the scanner's share is seen beside a free form of the foil */
-  bool scanner_is_suspect;                  /* an explanation holds what a scanner does */
-  fg_displacement displacement;             /* of the scanner, by evidence */
+  bool scanner_is_suspect;      /* an explanation holds what a scanner does */
+  fg_displacement displacement; /* of the scanner, by evidence */
+  fg_field_map map; /* owned; likewise, for other scans; mm: NULL: the set's fields are */
   fg_displacement_part *displacement_parts; /* owned; per part of the edge fit */
   fg_displacement_part *unseen_parts;       /* owned; likewise: by what the scanner may do unseen */
   fg_form_error *form_errors; /* owned; per circle of the parts (circles.h); NULL: not found */

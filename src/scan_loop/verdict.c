@@ -328,9 +328,9 @@ static void fill_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
 
 static fg_status put_model(fg_context *ctx, const fg_scan_loop *loop, fg_scan_result *result) {
   fg_scanner_model *model = NULL;
-  FG_TRY(fg_scanner_model_of(ctx, loop, &model));
+  fg_status status = fg_scanner_model_of(ctx, loop, &model);
   result->model = model;
-  return FG_OK;
+  return status;
 }
 
 fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {

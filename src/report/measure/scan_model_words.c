@@ -28,18 +28,28 @@ static fg_status append_effect(fg_context *ctx, const fg_scanner_model_effect *e
   return fg_text_append(ctx, text, "up to ±%s)", value);
 }
 
-/* Lists the effects that the model corrects: "a wrong scale along the carriage's way (q = 2000 ±
- * 1 ppm); ...". The caller frees. */
+static fg_status append_map(fg_context *ctx, const fg_scanner_model_facts *facts, char **text) {
+  char value[64];
+  fg_scan_loop_length_words(facts->map_half_range_um, value, sizeof value);
+  return fg_text_append(ctx, text,
+                        "%sa smooth displacement of the picture without a name (up to ±%s)",
+                        facts->effects ? "; " : "", value);
+}
+
+/* Lists what the model corrects: "a wrong scale along the carriage's way (q = 2000 ± 1 ppm); ...".
+ * The caller frees. */
 static fg_status effects_of(fg_context *ctx, const fg_scanner_model *model, char **text) {
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
   *text = NULL;
-  if (!facts.effects) return fg_text_print(ctx, text, "nothing: no error of the scanner was found");
+  bool has_map = isfinite(facts.map_half_range_um);
+  if (!facts.effects && !has_map)
+    return fg_text_print(ctx, text, "nothing: no error of the scanner was found");
   for (size_t i = 0; i < facts.effects; i++) {
     if (i) FG_TRY(fg_text_append(ctx, text, "; "));
     FG_TRY(append_effect(ctx, &facts.effect[i], text));
   }
-  return FG_OK;
+  return has_map ? append_map(ctx, &facts, text) : FG_OK;
 }
 
 static bool find_parameter(const fg_subject *list, size_t i, fg_subject *element) {
@@ -101,6 +111,9 @@ static const fg_member model_rows[] = {
      .words = "other explanations did as well; every u_ holds them"},
     {FG_ARRAY("effects", fg_scanner_model_facts, effect, effects, &effect_members),
      .words = "what it corrects"},
+    {FG_NUMBER("map_half_range_um", fg_scanner_model_facts, map_half_range_um),
+     .words = "how far its map, a displacement without a name, moves anything in the region; null: "
+              "it has none"},
 };
 const fg_members fg_scan_model_members = {.rows = model_rows,
                                           .count = sizeof model_rows / sizeof *model_rows,
