@@ -138,6 +138,22 @@ static void a_stable_process_has_a_capability(void **state) {
   assert_int_equal(count(page, "class=\"zone\""), 4); /* beyond either limit, wide and narrow */
 }
 
+/* Of 200 steady foils chance alone makes two or three signals: they withhold no Cpk. */
+static void a_signal_that_chance_explains_withholds_nothing(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 60, "L1", 3.4);
+  run_sql(f, "UPDATE measured SET value = value + 3.4205 - (SELECT avg(value) FROM measured"
+             " WHERE foil = 30) WHERE foil = 30");
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "<b>one point beyond three sigma</b>");
+  assert_has(page, "<dt>Cpk</dt>");
+  assert_has(page, "Stated although 1 point has a signal: chance explains up to ");
+  run_sql(f, "UPDATE measured SET value = value + 0.03 WHERE foil = 30");
+  page = get(f, "/trends", "", 200);
+  assert_has(page, "the chart is not stable: 1 point lies farther out than chance explains");
+  assert_has_not(page, "<dt>Cpk</dt>");
+}
+
 static void too_few_foils_have_none(void **state) {
   fixture *f = *state;
   assert_has(get(f, "/trends", "", 200), "0 foils with this quantity: a chart needs two");
@@ -155,7 +171,7 @@ static void a_shift_is_told_since_its_first_foil(void **state) {
   const char *page = get(f, "/trends", "", 200);
   assert_has(page, "<b>nine in a row on one side of the centre</b>: since <a href=\"/foil?id=41\">"
                    "S0041</a> (no. 41)</li>");
-  assert_has(page, "Not stated: the chart is not stable (");
+  assert_has(page, "Not stated: the chart is not stable: 12 points lie farther out");
   assert_has_not(page, "<dt>Cpk</dt>");
   for (int id = 53; id <= 80; id++)
     add_foil(f, id, "L1", "A", 3.4, 0.001);
@@ -463,6 +479,7 @@ static void a_scan_of_the_plate_is_told_by_its_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       TEST(a_stable_process_has_a_capability),
+      TEST(a_signal_that_chance_explains_withholds_nothing),
       TEST(too_few_foils_have_none),
       TEST(a_shift_is_told_since_its_first_foil),
       TEST(another_setup_is_marked_where_it_began),
