@@ -221,8 +221,8 @@ static void plot_means(const subgroups *all, unsigned rules, fg_chart *chart) {
   apply_rules(chart, rules);
 }
 
-/* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre line is that of the most
- * frequent subgroup size, of several the largest. */
+/* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre line is that of the
+ * largest subgroup. */
 static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *chart) {
   size_t at = 0, plotted = 0, largest = 0;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {
