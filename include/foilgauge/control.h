@@ -66,6 +66,24 @@ void fg_chart_free(fg_chart *chart);
  * few percent too large. */
 double fg_chart_chance_signals(size_t count, unsigned rules);
 
+/* Signals of the chart of a steady process, by chance alone. */
+typedef struct fg_chart_chance {
+  double expected; /* signals, by chance */
+  size_t max;      /* signals that chance alone explains */
+  size_t outliers; /* points farther out than chance explains, of all points together */
+  bool steady;     /* no more signals than max, no outliers */
+} fg_chart_chance;
+
+/* Judge whether chance alone explains a chart's signals: the chart of a steady process of
+ * independent normal values is called not steady with a probability of about `level` (0.01), half
+ * of it by the number of its signals (a negative binomial, as signals of run rules come in runs),
+ * half by its farthest point. Outliers are those of rule 1: without that rule there are none.
+ * size: as given to fg_chart_subgroups. */
+void fg_chart_judge_individuals(const fg_chart *chart, unsigned rules, double level,
+                                fg_chart_chance *chance);
+void fg_chart_judge_deviations(const fg_chart *chart, const size_t *size, unsigned rules,
+                               double level, fg_chart_chance *chance);
+
 /* The number of points that a rule covers, 1 to FG_RUN_RULES. */
 size_t fg_run_rule_length(unsigned rule);
 

@@ -31,7 +31,7 @@ static const char of_choice[] =
     " number FROM bumps WHERE flags <> '' AND instr(flags, 'crushed')) GROUP BY measured.foil) AS"
     " each JOIN foils ON foils.id = each.foil JOIN scans ON scans.id = foils.scan JOIN setups ON"
     " setups.id = scans.setup WHERE (?3 = '' OR foils.lot = ?3) AND (?4 = '' OR foils.die = ?4)"
-    " ORDER BY foils.id";
+    " AND" FG_NEWEST_SCAN_OF_FOIL " ORDER BY foils.id";
 static const char of_range[] =
     "SELECT foils.id, 0," COLUMNS
     " foils JOIN scans ON scans.id = foils.scan JOIN setups ON setups.id = scans.setup WHERE"

@@ -20,16 +20,26 @@ static double cell_number(const fg_column *column, size_t row) {
   return number ? column->number[row].value : NAN;
 }
 
-/* Serial numbers of digits alone are numbers in a table: they compare as such. */
-static int compare_serial(const fg_column *column, size_t row, const char *serial) {
-  const char *word = cell_word(column, row);
-  char *end;
-  double number = strtod(serial, &end);
-  bool is_number = end != serial && !*end;
-  if (word) return is_number ? 1 : strcmp(word, serial);
-  if (!is_number) return -1;
-  double cell = cell_number(column, row);
-  return (cell > number) - (cell < number);
+static bool is_digits(const char *text) {
+  return *text && text[strspn(text, "0123456789")] == '\0';
+}
+
+/* Compares serial numbers. Digits alone are compared as a number of any length: a spreadsheet drops
+ * zeros before it. */
+static int compare_serials(const char *one, const char *other) {
+  bool digits = is_digits(one), other_digits = is_digits(other);
+  if (digits != other_digits) return digits ? -1 : 1;
+  if (!digits) return strcmp(one, other);
+  one += strspn(one, "0");
+  other += strspn(other, "0");
+  size_t length = strlen(one), other_length = strlen(other);
+  return length != other_length ? (length > other_length) - (length < other_length)
+                                : strcmp(one, other);
+}
+
+static const char *row_serial(const fg_station_context *context, size_t row) {
+  const char *word = cell_word(&context->serials.column[context->key], row);
+  return word ? word : "";
 }
 
 static int compare_context_rows(const void *a, const void *b, void *user) {
@@ -37,12 +47,7 @@ static int compare_context_rows(const void *a, const void *b, void *user) {
   const size_t i = *(const size_t *)a, k = *(const size_t *)b;
   if (context->by_time)
     return (context->days[i] > context->days[k]) - (context->days[i] < context->days[k]);
-  const fg_column *column = &context->table.column[context->key];
-  const char *one = cell_word(column, i), *other = cell_word(column, k);
-  if (one && other) return strcmp(one, other);
-  if (one || other) return one ? 1 : -1;
-  double first = cell_number(column, i), second = cell_number(column, k);
-  return (first > second) - (first < second);
+  return compare_serials(row_serial(context, i), row_serial(context, k));
 }
 
 static bool find_key(fg_station_context *context) {
@@ -73,7 +78,7 @@ static fg_status read_days(fg_context *ctx, const char *path, fg_station_context
 }
 
 static fg_status load_context(fg_context *ctx, const char *path, fg_station_context *context) {
-  char sum[65];
+  char sum[65], words_sum[65];
   FG_TRY(fg_table_load(ctx, path, &context->table, sum));
   if (!find_key(context))
     return fg_fail(ctx, FG_ERR_DATA,
@@ -83,7 +88,12 @@ static fg_status load_context(fg_context *ctx, const char *path, fg_station_cont
   size_t rows = context->table.rows;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *context->order, (void **)&context->order));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *context->days, (void **)&context->days));
-  if (context->by_time) FG_TRY(read_days(ctx, path, context));
+  if (context->by_time)
+    FG_TRY(read_days(ctx, path, context));
+  else
+    FG_TRY(fg_table_load_words(ctx, path, &context->serials, words_sum));
+  if (!context->by_time && strcmp(sum, words_sum) != 0)
+    return fg_fail(ctx, FG_ERR_IO, "%.300s: it changed while it was read", path);
   for (size_t i = 0; i < rows; i++)
     context->order[i] = i;
   qsort_r(context->order, rows, sizeof *context->order, compare_context_rows, context);
@@ -105,6 +115,7 @@ fg_status fg_station_contexts_load(fg_context *ctx, const fg_station_request *re
 void fg_station_contexts_free(fg_station_contexts *contexts) {
   for (size_t i = 0; i < contexts->count; i++) {
     fg_table_free(&contexts->one[i].table);
+    fg_table_free(&contexts->one[i].serials);
     free(contexts->one[i].order);
     free(contexts->one[i].days);
   }
@@ -114,12 +125,11 @@ void fg_station_contexts_free(fg_station_contexts *contexts) {
 /* Number of rows whose key is not above the foil's. */
 static size_t count_rows_before(const fg_station_context *context, const char *serial,
                                 double days) {
-  const fg_column *column = &context->table.column[context->key];
   size_t low = 0, high = context->table.rows;
   while (low < high) {
     size_t middle = low + (high - low) / 2, row = context->order[middle];
-    bool before =
-        context->by_time ? context->days[row] <= days : compare_serial(column, row, serial) <= 0;
+    bool before = context->by_time ? context->days[row] <= days
+                                   : compare_serials(row_serial(context, row), serial) <= 0;
     if (before)
       low = middle + 1;
     else
@@ -151,8 +161,7 @@ fg_context_value fg_station_context_value(const fg_station_context *context, siz
   size_t behind = count_rows_before(context, serial, days);
   if (!behind) return value;
   size_t row = context->order[behind - 1];
-  if (!context->by_time && compare_serial(&context->table.column[context->key], row, serial) != 0)
-    return value;
+  if (!context->by_time && compare_serials(row_serial(context, row), serial) != 0) return value;
   value.word = cell_word(cells, row);
   if (value.word) return value;
   value.number =

@@ -11,6 +11,7 @@
  * numbers are interpolated, words are those of the last row before. */
 typedef struct fg_station_context {
   fg_table table;
+  fg_table serials; /* by serial: the same cells as they are written */
   bool by_time;
   size_t key;    /* its column */
   size_t *order; /* rows, sorted by key */

@@ -59,4 +59,11 @@ fg_status fg_station_database_end(fg_context *ctx, fg_station_database *database
 /* Returns the present time, as times are kept. */
 int64_t fg_station_now(void);
 
+/* SQL: a row of `foils` is the newest scan of its foil, of those that measured it. Foils without a
+ * serial number are scanned once. */
+#define FG_NEWEST_SCAN_OF_FOIL                                                                     \
+  " (foils.serial = '' OR NOT EXISTS (SELECT 1 FROM foils AS later WHERE later.serial ="           \
+  " foils.serial AND later.lot = foils.lot AND later.id > foils.id AND later.verdict <>"           \
+  " 'not_measured'))"
+
 #endif

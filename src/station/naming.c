@@ -2,8 +2,10 @@
 #include "station/naming.h"
 
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "core/sha256.h"
 #include "core/utf8.h"
 
 static const struct {
@@ -55,21 +57,38 @@ fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
   return pattern[0] ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "file_name is empty");
 }
 
-/* The name of a file is any bytes, that of a foil is a text that people read, type and search. */
-static void keep_field(fg_named *named, size_t field, const char *text, size_t length) {
+/* Copies what people read, type and search: bytes that are no such text are replaced. Returns true
+ * when the copy is the text, whole. */
+static bool copy_plain(char *to, size_t size, const char *text, size_t length) {
   static const char unknown[] = "\xEF\xBF\xBD";
-  char *to = (char *)named + fields[field].offset;
   size_t kept = 0;
+  bool whole = true;
   for (const char *at = text, *end = text + length; at < end;) {
     size_t bytes = fg_utf8_length(at);
     bool plain = bytes && at + bytes <= end && (unsigned char)*at >= ' ' && *at != 0x7f;
     size_t needed = plain ? bytes : sizeof unknown - 1;
-    if (kept + needed >= FG_NAMED_TEXT) break;
+    whole = whole && plain && kept + needed < size;
+    if (kept + needed >= size) break;
     memcpy(to + kept, plain ? at : unknown, needed);
     kept += needed;
     at += plain ? bytes : 1;
   }
   to[kept] = '\0';
+  return whole;
+}
+
+/* The name of a file is any bytes of any length, that of a foil is a text. Where they differ, eight
+ * digits of the bytes' sum keep foils apart that would have one name. */
+static void keep_field(fg_named *named, size_t field, const char *text, size_t length) {
+  enum { MARK_BYTES = 9 };
+  char *to = (char *)named + fields[field].offset, hex[65];
+  struct sha256_ctx sum;
+  if (copy_plain(to, FG_NAMED_TEXT, text, length)) return;
+  copy_plain(to, FG_NAMED_TEXT - MARK_BYTES, text, length);
+  sha256_init(&sum);
+  sha256_update(&sum, length, (const uint8_t *)text);
+  fg_sha256_finish(&sum, hex);
+  sprintf(to + strlen(to), "~%.8s", hex);
 }
 
 /* One step of a pattern: an open place (a field or `*`, FIELDS) and the text behind it; `first` has

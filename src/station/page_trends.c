@@ -226,20 +226,40 @@ static void write_withheld_reasons(const page *p) {
   else if (p->trend->count < STABLE_MIN)
     fprintf(out, "%zu foil%s: too few to say that the process is stable; it takes %d.",
             p->trend->count, fg_plural(p->trend->count), STABLE_MIN);
-  else if (quantity->chart.signals)
+  else if (quantity->chance.outliers)
     fprintf(out,
-            "the chart is not stable (%zu %s with a signal). What a process will do can be said "
+            "the chart is not stable: %zu %s farther out than chance explains (level 1 %%). Find "
+            "the cause, or choose a range without %s with limits of its own.",
+            quantity->chance.outliers, quantity->chance.outliers == 1 ? "point lies" : "points lie",
+            quantity->chance.outliers == 1 ? "it" : "them");
+  else if (!quantity->chance.steady)
+    fprintf(out,
+            "the chart is not stable (%zu %s with a signal; chance explains up to %zu, level 1 "
+            "%%). What a process will do can be said "
             "when it is stable; find the causes of the signals first, or choose a range after the "
             "last of them with limits of its own.",
-            quantity->chart.signals, quantity->chart.signals == 1 ? "point" : "points");
+            quantity->chart.signals, quantity->chart.signals == 1 ? "point" : "points",
+            quantity->chance.max);
   else if (!quantity->stable)
     fprintf(out,
-            "the spread within foils is not stable: it leaves its limits at %zu %s, while the "
-            "foils' means do not.",
+            "the spread within foils is not stable: it leaves its limits at %zu %s, more or "
+            "farther than chance explains (level 1 %%).",
             quantity->deviations.signals, quantity->deviations.signals == 1 ? "foil" : "foils");
   else
     fputs("the values do not differ.", out);
   fputs("</p>\n", out);
+}
+
+/* Says why signals withhold nothing. */
+static void write_chance_signals(const page *p) {
+  const fg_lot_quantity *quantity = &p->trend->quantity;
+  size_t signals = quantity->chart.signals;
+  if (signals)
+    fprintf(p->out,
+            "<p class=\"note\">Stated although %zu %s a signal: chance explains up to %zu in %zu "
+            "foils (level 1 %%), and no point lies farther out than by chance.</p>\n",
+            signals, signals == 1 ? "point has" : "points have", quantity->chance.max,
+            p->trend->count);
 }
 
 static void write_capability(const page *p) {
@@ -264,6 +284,7 @@ static void write_capability(const page *p) {
           capability->normal ? ""
                              : " The values are not normally distributed: Cp and Cpk say less "
                                "of how many will be beyond.");
+  write_chance_signals(p);
 }
 
 /* The columns of the database are searched for a cause. */

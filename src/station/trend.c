@@ -51,11 +51,10 @@ static void bind(fg_query *query, int64_t quantity, const fg_trend_choice *choic
   "IN (SELECT foil, number FROM bumps WHERE flags <> '' AND instr(flags, 'crushed'))"
 #define NAMED " (?3 = '' OR foils.lot = ?3) AND (?4 = '' OR foils.die = ?4)"
 
-static const char of_all[] = "SELECT measured.foil, measured.foil, value FROM measured WHERE" CHOSEN
-                             " AND ?3 = '' AND ?4 = '' ORDER BY measured.foil, bump";
-static const char of_named[] =
-    "SELECT measured.foil, measured.foil, value FROM measured JOIN foils ON foils.id ="
-    " measured.foil WHERE" CHOSEN " AND" NAMED " ORDER BY measured.foil, bump";
+/* A foil that is scanned again is no further foil: its newest scan counts. */
+static const char of_foils[] =
+    "SELECT foils.id, foils.id, value FROM foils CROSS JOIN measured ON measured.foil = foils.id"
+    " WHERE" CHOSEN " AND" NAMED " AND" FG_NEWEST_SCAN_OF_FOIL " ORDER BY foils.id, bump";
 /* A lot's values are the means of its foils, of all scans that show a foil: it was made once. Lots
  * come in the order of their first foil. */
 static const char of_lots[] =
@@ -73,8 +72,7 @@ static fg_status read_values(fg_context *ctx, sqlite3 *reader, fg_trend *trend) 
   int64_t quantity;
   fg_status status = FG_OK;
   FG_TRY(fg_trend_find_quantity(ctx, reader, choice, &quantity));
-  bool all = !choice->lot[0] && !choice->die[0];
-  fg_query_begin(reader, choice->by_lots ? of_lots : all ? of_all : of_named, &query);
+  fg_query_begin(reader, choice->by_lots ? of_lots : of_foils, &query);
   bind(&query, quantity, choice);
   while (status == FG_OK && fg_query_row(&query))
     status = add_value(ctx, trend, &at, fg_query_get_integer(&query, 0),

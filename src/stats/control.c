@@ -45,42 +45,6 @@ size_t fg_run_rule_length(unsigned rule) {
   return lengths[rule - 1];
 }
 
-/* Probability that a rule ends at a point, with p1, p2, p3 beyond 1, 2, 3 sigma on one side.
- * Permutations of n values: 2 of n! are monotonic, 2 E_n alternate (E_14 = 199360981, Andre 1881).
- */
-static double chance_of_rule(unsigned rule) {
-  const double p1 = erfc(1 / M_SQRT2) / 2, p2 = erfc(2 / M_SQRT2) / 2, p3 = erfc(3 / M_SQRT2) / 2;
-  const double alternating_14 = 2 * 199360981 / 87178291200.0;
-  switch (rule) {
-  case 1:
-    return 2 * p3;
-  case 2:
-    return 2 * pow(0.5, 9);
-  case 3:
-    return 2 / 720.0;
-  case 4:
-    return alternating_14;
-  case 5:
-    return 2 * p2 * (1 - pow(1 - p2, 2));
-  case 6:
-    return 2 * p1 * pow(p1, 3) * (4 * (1 - p1) + p1);
-  case 7:
-    return pow(1 - 2 * p1, 15);
-  default:
-    return pow(2 * p1, 8) - 2 * pow(p1, 8);
-  }
-}
-
-double fg_chart_chance_signals(size_t count, unsigned rules) {
-  double sum = 0;
-  for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++) {
-    size_t length = fg_run_rule_length(rule);
-    if (rules & (1u << (rule - 1)) && count >= length)
-      sum += (double)(count + 1 - length) * chance_of_rule(rule);
-  }
-  return sum;
-}
-
 /* Distance from the centre in sigma of this point. */
 static double zone(const fg_chart *chart, size_t i) {
   const fg_chart_point *point = &chart->point[i];
@@ -257,8 +221,8 @@ static void plot_means(const subgroups *all, unsigned rules, fg_chart *chart) {
   apply_rules(chart, rules);
 }
 
-/* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre line is that of the most
- * frequent subgroup size, of several the largest. */
+/* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre line is that of the
+ * largest subgroup. */
 static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *chart) {
   size_t at = 0, plotted = 0, largest = 0;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {

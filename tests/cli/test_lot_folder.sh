@@ -146,6 +146,14 @@ grep -q 'no date' stderr && fail "dates are called none"
 for line in 'K0004/1 03.02.2026/14:05:00' 'K0006/1 C7' 'K0009/1 die A, operator Kim "K" <b>, scan foil1.png' 'K0004/1 04.02.2026/00:00:00' 'K0009/1 die B'; do
   grep -qF "$line" deep/er/traced/results.dfq || fail "results.dfq has no $line"
 done
+# K0004 is local time: of UTC (Z) that of the machine's zone, over midnight and in summer; other times stand as they are.
+printf 'scan,date\nscans/foil1.png,2026-02-03T23:30:15Z\nscans/foil2.png,2026-07-04T08:00:59Z\n' >zoned.csv
+TZ=Europe/Berlin expect 0 '' lot zoned.csv -o zoned
+for line in 'K0004/1 04.02.2026/00:30:15' 'K0004/1 04.07.2026/10:00:59'; do
+  grep -qF "$line" zoned/results.dfq || fail "results.dfq has no $line: $(grep K0004/1 zoned/results.dfq)"
+done
+TZ=Europe/Berlin expect 0 '' lot traced.csv -o traced_berlin
+grep -qF 'K0004/1 03.02.2026/14:05:00' traced_berlin/results.dfq || fail "a time without a zone was moved"
 for part in '<InspectionStart>2026-02-03T14:05:00Z</InspectionStart>' '<InspectionStart>2026-02-04T00:00:00Z<' \
   '<Attributes n="7"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
   '<Attributes n="5"><AttributeStr name="die" value="B"/>' '<AttributeStr name="scan" value="scans/foil2.png"/>'; do

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A hub shows the parts of its stations: each part once, the newest event of a foil in force, in SQLite and, where it is
-# installed, in PostgreSQL; a hub that is killed, is gone for a while or answers late loses nothing and has nothing twice.
+# installed, in PostgreSQL, in the order in which they came; a hub that is killed, is gone for a while or answers late loses nothing and has nothing twice.
 # Usage: test_station_hub.sh PROGRAM
 name=test_station_hub
 . "$(dirname "$0")/../support/station.sh"
@@ -19,9 +19,9 @@ for seed in 1 2 3; do draw $seed "$work/$seed.png"; done
 # try DATABASE: all of it with that database.
 try() {
   mkdir -p "$work/a" "$work/b"
-  checks - "$program" "$work" "$1" >&2 <<'PY' || fail "the hub in ${1%%:*}"
+  checks - "$program" "$work" "$1" "$cluster/psql" >&2 <<'PY' || fail "the hub in ${1%%:*}"
 import json, os, re, shutil, signal, sqlite3, socket, subprocess, sys, time, urllib.error, urllib.parse, urllib.request
-program, work, database = sys.argv[1:]
+program, work, database, psql = sys.argv[1:]
 processes = {}
 with socket.socket() as free:
     free.bind(("127.0.0.1", 0))
@@ -104,6 +104,36 @@ try:
     page = urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{port}/", headers={"Cookie": "foilgauge=" + token})).read().decode()
     assert "hall a" in page and ">B3</a>" in page and page.count("<table") == 2, page
     assert ask("/api/parts.csv").count("\n") == 5, ask("/api/parts.csv")
+    # A station's wrong clock moves no part: they are in the order in which they first came, by the hub's clock.
+    def post(event, foil, serial, measured_at):
+        time.sleep(1.1)
+        ask("/api/parts", json.dumps({**whole, "source": "c" * 32, "station": "hall c", "event": event, "foil": foil, "serial": serial,
+                                      "measured_at": measured_at}).encode())
+    def order():
+        return [part["serial"] for part in state()["parts"]][:3]
+    post(1, 1, "C1", "2099-01-01T00:00:00Z")
+    post(2, 2, "C2", "2001-01-01T00:00:00Z")
+    post(3, 3, "C3", "2026-01-01T00:00:00Z")
+    assert order() == ["C3", "C2", "C1"], order()
+    post(4, 1, "C1b", "2099-01-01T00:00:00Z")
+    assert order() == ["C3", "C2", "C1b"], order()
+    assert [row["parts"] for row in state()["stations"]] == [2, 2, 3], state()["stations"]
+    assert [part["measured_at"][:4] for part in state(station="hall c")["parts"]] == ["2026", "2001", "2099"]
+    # A database of before, which has no times of receipt, gets them of its events.
+    before = state()["parts"]
+    kill("hub")
+    old = ["DROP INDEX hub_parts_by_receipt", "ALTER TABLE hub_parts DROP COLUMN received_at"]
+    for statement in old:
+        if database.startswith("postgresql"):
+            subprocess.run([psql, "-q", "-v", "ON_ERROR_STOP=1", "-c", statement, database], check=True)
+        else:
+            with sqlite3.connect(database) as connection:
+                connection.execute(statement)
+    for _ in range(2):
+        start_hub()
+        wait_until(lambda: ask("/api/parts") != 401)
+        assert state()["parts"] == before, (state()["parts"], before)
+        kill("hub")
 finally:
     for process in processes.values():
         if process.poll() is None:

@@ -106,10 +106,39 @@ static void test_long_names(void **state) {
   }
 }
 
+/* Names that differ behind the longest text, or in bytes that are no text, are foils of their own.
+ */
+static void test_alike_names(void **state) {
+  (void)state;
+  fg_named one, other;
+  char name[NAME + 1], alike[NAME + 1];
+  memset(name, 'a', NAME);
+  name[FG_NAMED_TEXT - 1] = '\0';
+  assert_true(fg_naming_split("{serial}", name, &one));
+  assert_string_equal(one.serial, name);
+  name[FG_NAMED_TEXT - 1] = 'b';
+  name[FG_NAMED_TEXT] = '\0';
+  memcpy(alike, name, sizeof name);
+  alike[FG_NAMED_TEXT - 1] = 'c';
+  fg_naming_split("{serial}", name, &one);
+  fg_naming_split("{serial}", alike, &other);
+  assert_int_equal(strlen(one.serial), FG_NAMED_TEXT - 1);
+  assert_string_not_equal(one.serial, other.serial);
+  fg_naming_split("{serial}", name, &other);
+  assert_string_equal(one.serial, other.serial);
+  fg_naming_split("{serial}", "foil\xE4", &one);
+  fg_naming_split("{serial}", "foil\xF6", &other);
+  assert_string_not_equal(one.serial, other.serial);
+  assert_int_equal(strncmp(one.serial, "foil\xEF\xBF\xBD~", 8), 0);
+  fg_naming_split("{serial}", "foil\xC3\xA4", &one);
+  assert_string_equal(one.serial, "foil\xC3\xA4");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_as_defined),
       cmocka_unit_test(test_long_names),
+      cmocka_unit_test(test_alike_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

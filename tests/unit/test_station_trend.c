@@ -1,121 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trends and the scanner's health, from rows of a database to the words on the page. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "station/answer.h"
 #include "station/check.h"
 #include "station/scan_command.h"
-#include "support/page_names.h"
-#include "support/test.h"
+#include "support/trend_station.h"
 
-enum { BUMPS = 3 };
 #define HOUR_MS INT64_C(3600000)
-
-typedef struct fixture {
-  char folder[64];
-  fg_station_settings settings;
-  fg_station_request request;
-  fg_inspection station;
-  double drawn;
-} fixture;
-
-static void run_sql(fixture *f, const char *format, ...) {
-  char *sql;
-  fg_context ctx;
-  va_list arguments;
-  va_start(arguments, format);
-  assert_true(vasprintf(&sql, format, arguments) > 0);
-  va_end(arguments);
-  if (fg_sql_run(&ctx, f->station.database.writer, sql) != FG_OK) fail_msg("%s", ctx.message);
-  free(sql);
-}
-
-static int start(void **state) {
-  fg_context ctx = {0};
-  fixture *f = calloc(1, sizeof *f);
-  strcpy(f->folder, "/tmp/foilgauge_trend_XXXXXX");
-  assert_non_null(mkdtemp(f->folder));
-  assert_ok(&ctx, fg_station_settings_load(&ctx, NULL, NULL, &f->settings));
-  f->settings.lot.design.tolerance_count = 1;
-  strcpy(f->settings.lot.design.calibration.not_needed, "made up");
-  f->settings.lot.design.tolerances[0] = (fg_tolerance){"radius_mm", 3.3, 3.5};
-  f->request = (fg_station_request){.folder = f->folder, .settings = &f->settings};
-  f->station.request = &f->request;
-  f->station.settings = &f->settings;
-  strcpy(f->station.host, "127.0.0.1:1");
-  if (fg_station_database_open(&ctx, f->folder, &f->station.database) != FG_OK)
-    fail_msg("%s", ctx.message);
-  char *recipe;
-  assert_ok(&ctx, fg_lot_settings_format(&ctx, &f->settings.lot, false, &recipe));
-  run_sql(f, "INSERT INTO setups VALUES (1, 'x', 'v', '%s', NULL, NULL, 1)", recipe);
-  free(recipe);
-  run_sql(f, "INSERT INTO quantities VALUES (1, 'bump', 'radius_mm', 'mm'), (2, 'foil', "
-             "'thickness_mm', 'mm')");
-  *state = f;
-  return 0;
-}
-
-static int stop(void **state) {
-  static const char *const files[] = {"foilgauge.sqlite", "foilgauge.sqlite-wal",
-                                      "foilgauge.sqlite-shm"};
-  fixture *f = *state;
-  char path[128];
-  fg_station_database_close(&f->station.database);
-  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-    in_row("files[%zu]", i);
-    snprintf(path, sizeof path, "%s/%s", f->folder, files[i]);
-    unlink(path);
-  }
-  rmdir(f->folder);
-  free(f);
-  return 0;
-}
-
-/* Scatter without the signals that chance has, too: mean 0, sd 1, never beyond 1.5, no runs. */
-static double draw(fixture *f) {
-  return M_SQRT2 * sin(f->drawn++);
-}
-
-static void add_foil(fixture *f, int id, const char *lot, const char *die, double radius,
-                     double scatter) {
-  run_sql(
-      f,
-      "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) VALUES (%d, '%d', 1, "
-      "'%d.png', 'folder', %d, 'pass');"
-      "INSERT INTO foils VALUES (%d, %d, 1, 'S%04d', '%s', '%s', '', 'pass', '', '', '', '', 0)",
-      id, id, id, id, id, id, id, lot, die);
-  for (int bump = 1; bump <= BUMPS; bump++)
-    run_sql(f,
-            "INSERT INTO bumps VALUES (%d, %d, 'pass', '');"
-            "INSERT INTO measured VALUES (1, %d, %d, %.9g, 0.0001)",
-            id, bump, id, bump, radius + scatter * draw(f));
-}
-
-static void add_foils(fixture *f, int from, int to, const char *lot, double radius) {
-  run_sql(f, "BEGIN");
-  for (int id = from; id <= to; id++)
-    add_foil(f, id, lot, id % 2 ? "A" : "B", radius + 0.004 * draw(f), 0.004);
-  run_sql(f, "COMMIT");
-}
-
-/* The page, in a buffer that the next call writes over. */
-static const char *get(fixture *f, const char *path, const char *query, int code) {
-  static char text[1 << 20];
-  fg_answer answer;
-  fg_request request = {.path = path, .host = "127.0.0.1:1", .last_event = -1};
-  assert_true(fg_request_read_fields(&request, query, strlen(query)));
-  fg_station_answer(&f->station, &request, &answer);
-  assert_int_equal(answer.code, code);
-  assert_true(answer.size < sizeof text);
-  memcpy(text, answer.body, answer.size);
-  text[answer.size] = '\0';
-  free(answer.body);
-  return page_without_name_marks(text);
-}
 
 static size_t count(const char *text, const char *part) {
   size_t found = 0;
@@ -138,6 +27,21 @@ static void a_stable_process_has_a_capability(void **state) {
   assert_int_equal(count(page, "class=\"zone\""), 4); /* beyond either limit, wide and narrow */
 }
 
+static void a_signal_that_chance_explains_withholds_nothing(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 60, "L1", 3.4);
+  run_sql(f, "UPDATE measured SET value = value + 3.4205 - (SELECT avg(value) FROM measured"
+             " WHERE foil = 30) WHERE foil = 30");
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "<b>one point beyond three sigma</b>");
+  assert_has(page, "<dt>Cpk</dt>");
+  assert_has(page, "Stated although 1 point has a signal: chance explains up to ");
+  run_sql(f, "UPDATE measured SET value = value + 0.03 WHERE foil = 30");
+  page = get(f, "/trends", "", 200);
+  assert_has(page, "the chart is not stable: 1 point lies farther out than chance explains");
+  assert_has_not(page, "<dt>Cpk</dt>");
+}
+
 static void too_few_foils_have_none(void **state) {
   fixture *f = *state;
   assert_has(get(f, "/trends", "", 200), "0 foils with this quantity: a chart needs two");
@@ -155,7 +59,7 @@ static void a_shift_is_told_since_its_first_foil(void **state) {
   const char *page = get(f, "/trends", "", 200);
   assert_has(page, "<b>nine in a row on one side of the centre</b>: since <a href=\"/foil?id=41\">"
                    "S0041</a> (no. 41)</li>");
-  assert_has(page, "Not stated: the chart is not stable (");
+  assert_has(page, "Not stated: the chart is not stable: 12 points lie farther out");
   assert_has_not(page, "<dt>Cpk</dt>");
   for (int id = 53; id <= 80; id++)
     add_foil(f, id, "L1", "A", 3.4, 0.001);
@@ -270,6 +174,19 @@ static void lots_dies_and_single_bumps_are_chosen(void **state) {
   get(f, "/trends", "q=bump:centre_mm", 404);
 }
 
+/* Scans the first foils four times more. */
+static void scan_again(fixture *f, int last) {
+  for (int again = 1000; again <= 4000; again += 1000)
+    run_sql(f,
+            "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) SELECT id + %1$d,"
+            " sha256 || '-%1$d', setup, path, source, at, verdict FROM scans WHERE id <= %2$d;"
+            "INSERT INTO foils SELECT id + %1$d, scan + %1$d, number, serial, lot, die, operator,"
+            " verdict, reasons, coil, oven, scanner, order_id FROM foils WHERE id <= %2$d;"
+            "INSERT INTO measured SELECT quantity, foil + %1$d, bump, value, u FROM measured"
+            " WHERE foil <= %2$d",
+            again, last);
+}
+
 /* Scans of one foil say little of how foils vary, and do not narrow the limits of lots. */
 static void a_foil_counts_once_in_its_lot(void **state) {
   fixture *f = *state;
@@ -280,18 +197,25 @@ static void a_foil_counts_once_in_its_lot(void **state) {
   const char *page = get(f, "/trends", "by=lots", 200), *sigma = strstr(page, "(σ ");
   assert_non_null(sigma);
   snprintf(once, sizeof once, "%.*s", (int)strcspn(sigma, ")"), sigma);
-  for (int again = 1000; again <= 4000; again += 1000)
-    run_sql(f,
-            "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) SELECT id + %d,"
-            " sha256 || '-%d', setup, path, source, at, verdict FROM scans WHERE id <= 20;"
-            "INSERT INTO foils SELECT id + %d, scan + %d, number, serial, lot, die, operator,"
-            " verdict, reasons, coil, oven, scanner, order_id FROM foils WHERE id <= 20;"
-            "INSERT INTO measured SELECT quantity, foil + %d, bump, value, u FROM measured"
-            " WHERE foil <= 20",
-            again, again, again, again, again);
+  scan_again(f, 20);
   page = get(f, "/trends", "by=lots", 200);
   assert_has(page, once);
   assert_has(page, "5 lots, from L1 (no. 1)");
+}
+
+/* The newest scan counts, of those that measured the foil. */
+static void a_foil_counts_once_in_its_chart(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 30, "L1", 3.4);
+  scan_again(f, 10);
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "30 foils, from <a href=\"/foil?id=11\">S0011</a> (no. 1)");
+  assert_has(page, "<a href=\"/foil?id=4010\">S0010</a> (no. 30)");
+  run_sql(f, "UPDATE foils SET verdict = 'not_measured' WHERE id = 4010;"
+             "DELETE FROM measured WHERE foil = 4010");
+  assert_has(get(f, "/trends", "", 200), "30 foils, from ");
+  run_sql(f, "UPDATE foils SET serial = '' WHERE id > 1000");
+  assert_has(get(f, "/trends", "", 200), "69 foils, from ");
 }
 
 static void names_cannot_write_the_page(void **state) {
@@ -463,6 +387,7 @@ static void a_scan_of_the_plate_is_told_by_its_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       TEST(a_stable_process_has_a_capability),
+      TEST(a_signal_that_chance_explains_withholds_nothing),
       TEST(too_few_foils_have_none),
       TEST(a_shift_is_told_since_its_first_foil),
       TEST(another_setup_is_marked_where_it_began),
@@ -472,6 +397,7 @@ int main(void) {
       TEST(many_points_are_thinned_out_and_none_that_stands_out),
       TEST(lots_dies_and_single_bumps_are_chosen),
       TEST(a_foil_counts_once_in_its_lot),
+      TEST(a_foil_counts_once_in_its_chart),
       TEST(names_cannot_write_the_page),
       TEST(a_check_is_due_and_done_and_due_again),
       TEST(a_changed_picture_withholds_until_it_is_accepted),

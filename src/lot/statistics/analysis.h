@@ -80,11 +80,12 @@ typedef struct fg_lot_quantity {
   bool has_density, has_chart, has_subgroups, has_capability;
   fg_density density;
   double mode;
-  fg_chart chart;             /* chart of individuals: means of the foils */
-  fg_chart means, deviations; /* charts of subgroups: the parts of a foil */
-  bool stable;                /* no signal on the charts of individuals and deviations */
-  fg_lot_cause cause;         /* cause of the signals of the chart of individuals */
-  fg_lot_trend trend;         /* sought where there are such signals */
+  fg_chart chart;                        /* chart of individuals: means of the foils */
+  fg_chart means, deviations;            /* charts of subgroups: the parts of a foil */
+  fg_chart_chance chance, spread_chance; /* of `chart` and of `deviations` */
+  bool stable;        /* chance explains the charts of individuals and deviations */
+  fg_lot_cause cause; /* cause of the signals of the chart of individuals */
+  fg_lot_trend trend; /* sought where there are such signals */
   fg_capability capability;
 } fg_lot_quantity;
 
@@ -401,6 +402,9 @@ enum { FG_LOT_FOIL_ROWS_MAX = 300 };
 
 /* Parts of the analysis, each in a file of its own. */
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);
+/* Level at which a chart's signals are more than chance explains. */
+extern const double fg_lot_chart_level;
+
 /* Fills the charts of a quantity whose values and sizes are known, and whether it is stable; where
  * it has a tolerance and a chart, also its capability, which needs `sd`. */
 fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,

@@ -220,6 +220,8 @@ static fg_status find_foil_means(fg_context *ctx, const fg_lot_quantity *quantit
   return FG_OK;
 }
 
+const double fg_lot_chart_level = 0.01;
+
 fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                                 fg_lot_quantity *quantity) {
   double *means;
@@ -236,8 +238,14 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
       fg_owner_is_part(quantity->owner) &&
       fg_chart_subgroups(&unused, quantity->value, quantity->size, foils, FG_SIGMA_FROM_SD, rules,
                          &quantity->means, &quantity->deviations) == FG_OK;
-  quantity->stable = quantity->has_chart && quantity->chart.signals == 0 &&
-                     (!quantity->has_subgroups || quantity->deviations.signals == 0);
+  quantity->chance = quantity->spread_chance = (fg_chart_chance){.steady = true};
+  if (quantity->has_chart)
+    fg_chart_judge_individuals(&quantity->chart, rules, fg_lot_chart_level, &quantity->chance);
+  if (quantity->has_subgroups)
+    fg_chart_judge_deviations(&quantity->deviations, quantity->size, rules, fg_lot_chart_level,
+                              &quantity->spread_chance);
+  quantity->stable =
+      quantity->has_chart && quantity->chance.steady && quantity->spread_chance.steady;
   return FG_OK;
 }
 

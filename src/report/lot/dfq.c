@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "core/file.h"
 #include "core/json_writer.h"
@@ -56,17 +57,21 @@ static void put_characteristic(FILE *out, size_t number, const fg_lot_words *wor
 }
 
 /* Puts the date as dd.mm.yyyy/hh:mm:ss, from the manifest's column `date`, else from the scan's
- * file. */
+ * file. It has no zone and is read as local time: a time with a Z is UTC and is turned into that of
+ * this machine's zone. */
 static void put_date_field(FILE *out, const fg_lot *lot, size_t item, size_t number) {
   size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
-  double days =
-      fg_date_days(column == FG_NO_COLUMN ? lot->records[item].date
-                                          : fg_manifest_cell(&lot->manifest, item, column));
+  const char *text = column == FG_NO_COLUMN ? lot->records[item].date
+                                            : fg_manifest_cell(&lot->manifest, item, column);
+  double days = fg_date_days(text);
   char date[FG_DATE_TEXT];
+  struct tm local;
   if (!isfinite(days)) return;
-  fg_date_format(days, date); /* 2026-11-20T13:45 */
-  fprintf(out, "K0004/%zu %.2s.%.2s.%.4s/%s:00\r\n", number, date + 8, date + 5, date,
-          date[10] ? date + 11 : "00:00");
+  time_t seconds = (time_t)llround(days * 86400);
+  bool is_utc = text[strlen(text) - 1] == 'Z';
+  if (!(is_utc ? localtime_r(&seconds, &local) : gmtime_r(&seconds, &local))) return;
+  strftime(date, sizeof date, "%d.%m.%Y/%H:%M:%S", &local);
+  fprintf(out, "K0004/%zu %s\r\n", number, date);
 }
 
 /* Returns true for columns with a field of their own, and for the names of scan and foil. */

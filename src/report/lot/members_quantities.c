@@ -283,7 +283,12 @@ static const fg_member quantity_rows[] = {
     {FG_OBJECT("individuals", fg_lot_quantity, chart, &chart_members), .present = has_chart,
      .words = "chart of the foils' means"},
     {FG_FLAG("stable", fg_lot_quantity, stable), .present = has_chart,
-     .words = "no signal on the charts of individuals and deviations"},
+     .words = "chance explains the signals on the charts of individuals and deviations, at a level "
+              "of 1 %"},
+    {FG_NUMBER("signals_by_chance", fg_lot_quantity, chance.expected), .present = has_chart,
+     .words = "on the chart of individuals of a steady process, expected"},
+    {FG_COUNT("signals_explained", fg_lot_quantity, chance.max), .present = has_chart,
+     .words = "up to so many chance explains"},
     {FG_TEXT_BY("runs", find_runs), .options = FG_MEMBER_NOT_IN_JSON, .look = look_at_runs,
      .page = {.rank = 4, .heading = "runs"}, .column = is_values_table},
     {FG_SAME(&fg_lot_cause_members), .present = has_chart},

@@ -73,9 +73,22 @@ static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
   fg_html_table(out, &fg_lot_capability_members, &(fg_subject){.whole = analysis}, find_capable);
   fprintf(out,
           "<p class=\"note\">Intervals at %.4g %%. Cp and Cpk speak of what "
-          "the process will do, so they are stated only while its control charts show no signal; "
+          "the process will do, so they are stated only while chance explains the signals of its "
+          "control charts; "
           "otherwise Pp and Ppk tell what it did.</p>\n",
           100 * analysis->lot->settings.confidence);
+}
+
+/* Puts the decision on the signals, and its reason. */
+static void put_chance(FILE *out, const char *name, const fg_chart *chart,
+                       const fg_chart_chance *chance) {
+  if (!chart->signals) return;
+  if (chance->outliers)
+    fprintf(out, " %s: %zu of them lie%s farther out than chance explains.", name, chance->outliers,
+            chance->outliers == 1 ? "s" : "");
+  else
+    fprintf(out, " %s: chance explains up to %zu, so %s.", name, chance->max,
+            chance->steady ? "it is stable" : "it is not stable");
 }
 
 static void put_chart_signals(FILE *out, const fg_lot_quantity *quantity) {
@@ -89,6 +102,9 @@ static void put_chart_signals(FILE *out, const fg_lot_quantity *quantity) {
     fprintf(out, ". Spread within foils: %zu signal%s", quantity->deviations.signals,
             quantity->deviations.signals == 1 ? "" : "s");
   fputs(".", out);
+  put_chance(out, "Chart", &quantity->chart, &quantity->chance);
+  if (quantity->has_subgroups)
+    put_chance(out, "Spread", &quantity->deviations, &quantity->spread_chance);
 }
 
 static void put_control_chart(FILE *out, const fg_lot_analysis *analysis,
@@ -112,7 +128,8 @@ static bool is_charted(const fg_lot_analysis *analysis, const fg_lot_quantity *q
 
 static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<h2>How the process runs</h2>\n<p class=\"note\">Red, dashed: three sigma from foil to "
-        "foil about the mean. Red squares: signals.</p>\n",
+        "foil about the mean. Red squares: signals. What chance explains "
+        "has a level of 1 %: of 100 steady charts about one has more.</p>\n",
         out);
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (is_charted(analysis, &analysis->quantities[i]))

@@ -14,6 +14,7 @@ typedef struct fg_hub_part {
   char source[FG_HUB_TEXT], station[FG_HUB_TEXT], at[FG_HUB_TEXT], measured_at[FG_HUB_TEXT];
   char serial[FG_HUB_TEXT], lot[FG_HUB_TEXT], die[FG_HUB_TEXT], operator_name[FG_HUB_TEXT];
   char verdict[FG_HUB_TEXT], disposition[FG_HUB_TEXT], withheld[FG_HUB_REASON];
+  char received_at[FG_HUB_TEXT]; /* first, by the hub's clock */
   size_t event, foil;
 } fg_hub_part;
 

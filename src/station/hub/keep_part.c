@@ -64,18 +64,28 @@ static fg_status keep_event(fg_context *ctx, fg_hub_store *store, const fg_hub_p
   return FG_OK;
 }
 
-/* The newest event of a foil is in force, in whatever order they come. */
+/* The newest event of a foil is in force, in whatever order they come; its first receipt stays. */
 static fg_status keep_newest(fg_context *ctx, fg_hub_store *store, const fg_hub_part *part,
-                             const char *event, const char *foil) {
-  const char *const values[] = {
-      part->source,     foil,      event,     part->station,       part->at,      part->measured_at,
-      part->serial,     part->lot, part->die, part->operator_name, part->verdict, part->withheld,
-      part->disposition};
+                             const char *event, const char *foil, const char *now) {
+  const char *const values[] = {part->source,
+                                foil,
+                                event,
+                                part->station,
+                                part->at,
+                                part->measured_at,
+                                part->serial,
+                                part->lot,
+                                part->die,
+                                part->operator_name,
+                                part->verdict,
+                                part->withheld,
+                                part->disposition,
+                                now};
   return fg_hub_store_run(
       ctx, store,
       "INSERT INTO hub_parts (source, foil, event, station, at, measured_at, serial, lot, die,"
-      " operator, verdict, withheld, disposition)"
-      " VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13)"
+      " operator, verdict, withheld, disposition, received_at)"
+      " VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14)"
       " ON CONFLICT (source, foil) DO UPDATE SET event = excluded.event,"
       " station = excluded.station, at = excluded.at, serial = excluded.serial,"
       " lot = excluded.lot, die = excluded.die, operator = excluded.operator,"
@@ -102,7 +112,7 @@ static fg_status keep_rows(fg_context *ctx, fg_hub_store *store, const fg_hub_pa
   fg_date_format_utc(time(NULL), now);
   FG_TRY(keep_event(ctx, store, part, event, now, body, known));
   if (*known) return FG_OK;
-  FG_TRY(keep_newest(ctx, store, part, event, foil));
+  FG_TRY(keep_newest(ctx, store, part, event, foil, now));
   return keep_station(ctx, store, part, now);
 }
 
@@ -138,7 +148,7 @@ static fg_status read_stations(fg_context *ctx, fg_hub *hub, fg_hub_state *state
       " coalesce(sum(CASE WHEN p.verdict IN ('fail', 'cannot_tell', 'not_measured')"
       " AND p.disposition = '' THEN 1 ELSE 0 END), 0)"
       " FROM hub_stations AS s LEFT JOIN hub_parts AS p"
-      " ON p.source = s.source AND p.measured_at >= $1"
+      " ON p.source = s.source AND p.received_at >= $1"
       " GROUP BY s.station, s.source, s.received_at ORDER BY s.station, s.source",
       values, 1, &rows));
   fg_status status = fg_memory_allocate(ctx, rows.rows + 1, sizeof *state->stations, &block);
@@ -157,13 +167,13 @@ static fg_status read_stations(fg_context *ctx, fg_hub *hub, fg_hub_state *state
 }
 
 static void copy_part(const fg_hub_rows *rows, size_t row, fg_hub_part *part) {
-  char *const texts[] = {part->source,  part->station,    part->at,  part->measured_at,
-                         part->serial,  part->lot,        part->die, part->operator_name,
-                         part->verdict, part->disposition};
-  *part = (fg_hub_part){.event = read_count(rows, row, 11), .foil = read_count(rows, row, 12)};
+  char *const texts[] = {part->source,  part->station,     part->at,         part->measured_at,
+                         part->serial,  part->lot,         part->die,        part->operator_name,
+                         part->verdict, part->disposition, part->received_at};
+  *part = (fg_hub_part){.event = read_count(rows, row, 12), .foil = read_count(rows, row, 13)};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
     fg_text_clip(texts[i], FG_HUB_TEXT, "%s", fg_hub_cell(rows, row, i));
-  fg_text_clip(part->withheld, sizeof part->withheld, "%s", fg_hub_cell(rows, row, 10));
+  fg_text_clip(part->withheld, sizeof part->withheld, "%s", fg_hub_cell(rows, row, 11));
 }
 
 /* One part more than a page shows: then there is another page. */
@@ -177,11 +187,11 @@ static fg_status find_parts(fg_context *ctx, fg_hub *hub, const fg_hub_search *s
   return fg_hub_store_run(
       ctx, &hub->store,
       "SELECT source, station, at, measured_at, serial, lot, die, operator, verdict, disposition,"
-      " withheld, event, foil FROM hub_parts WHERE ($1 = '' OR station = $1)"
+      " received_at, withheld, event, foil FROM hub_parts WHERE ($1 = '' OR station = $1)"
       " AND ($2 = '' OR serial = $2) AND ($3 = '' OR lot = $3)"
       " AND ($4 = '' OR verdict = $4 OR ($4 = 'open' AND disposition = ''"
       " AND verdict IN ('fail', 'cannot_tell', 'not_measured')))"
-      " ORDER BY measured_at DESC, source, foil DESC LIMIT CAST($5 AS INTEGER)"
+      " ORDER BY received_at DESC, source, foil DESC LIMIT CAST($5 AS INTEGER)"
       " OFFSET CAST($6 AS INTEGER)",
       values, sizeof values / sizeof *values, rows);
 }

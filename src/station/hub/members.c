@@ -21,7 +21,7 @@ static void write_serial(FILE *out, const fg_subject *subject) {
 static const fg_member station_rows[] = {
     {FG_TEXT("station", fg_hub_station, station), .heading = "Station", .page = {.rank = 1}},
     {FG_TEXT("source", fg_hub_station, source), .words = "identity of its database"},
-    {FG_COUNT("parts", fg_hub_station, parts), .words = "measured in the last 24 hours",
+    {FG_COUNT("parts", fg_hub_station, parts), .words = "that came in the last 24 hours",
      .heading = "Parts,\n24 h", .page = {.rank = 2}},
     {FG_COUNT("failed", fg_hub_station, failed), .words = "of them that failed",
      .heading = "Failed", .page = {.rank = 3}},
@@ -49,8 +49,11 @@ static const fg_member part_rows[] = {
     {FG_TEXT("die", fg_hub_part, die), .heading = "Die", .page = {.rank = 6}, .csv = {.rank = 7}},
     {FG_TEXT("operator", fg_hub_part, operator_name), .heading = "Operator", .page = {.rank = 7},
      .csv = {.rank = 8}},
-    {FG_TEXT("measured_at", fg_hub_part, measured_at), .words = "UTC", .heading = "Measured, UTC",
-     .page = {.rank = 8}, .csv = {.rank = 9}},
+    {FG_TEXT("measured_at", fg_hub_part, measured_at), .words = "UTC, by the station's clock",
+     .heading = "Measured, UTC", .page = {.rank = 8}, .csv = {.rank = 9}},
+    {FG_TEXT("received_at", fg_hub_part, received_at),
+     .words = "when the part first came, UTC, by the hub's clock", .heading = "Received, UTC",
+     .page = {.rank = 9}, .csv = {.rank = 13}},
     {FG_TEXT("source", fg_hub_part, source), .words = "identity of the station's database",
      .csv = {.rank = 10}},
     {FG_COUNT("foil", fg_hub_part, foil), .words = "number in that database", .csv = {.rank = 11}},
@@ -62,7 +65,7 @@ static const fg_member state_rows[] = {
     {FG_HEAD("foilgauge/hub/1")},
     {FG_LIST("stations", fg_hub_state, stations, station_count, &fg_hub_station_members)},
     {FG_LIST("parts", fg_hub_state, parts, part_count, &fg_hub_part_members),
-     .options = FG_MEMBER_ON_LINE, .words = "the newest first"},
+     .options = FG_MEMBER_ON_LINE, .words = "those that came last first"},
     {FG_FLAG("more", fg_hub_state, more), .words = "the next page has parts"},
 };
 const fg_members fg_hub_state_members = FG_MEMBERS(state_rows);

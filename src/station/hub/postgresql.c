@@ -84,7 +84,8 @@ static void close_postgresql(void *connection) {
   pq.finish(connection);
 }
 
-const fg_hub_kind fg_hub_postgresql = {open_postgresql, run_postgresql, close_postgresql};
+const fg_hub_kind fg_hub_postgresql = {open_postgresql, run_postgresql, close_postgresql,
+                                       "CAST(CAST(body AS json) ->> 'foil' AS BIGINT)"};
 #else
 const fg_hub_kind fg_hub_postgresql = {.open = NULL};
 #endif

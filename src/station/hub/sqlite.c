@@ -45,4 +45,5 @@ static fg_status run_sqlite(fg_context *ctx, void *connection, const char *sql,
   return status == FG_OK ? ended : status;
 }
 
-const fg_hub_kind fg_hub_sqlite = {open_sqlite, run_sqlite, close_sqlite};
+const fg_hub_kind fg_hub_sqlite = {open_sqlite, run_sqlite, close_sqlite,
+                                   "json_extract(body, '$.foil')"};

@@ -27,6 +27,7 @@ typedef struct fg_hub_kind {
   fg_status (*run)(fg_context *ctx, void *connection, const char *sql, const char *const *values,
                    size_t count, fg_hub_rows *rows);
   void (*close)(void *connection);
+  const char *foil_of_body; /* SQL: the number of the foil in hub_events.body */
 } fg_hub_kind;
 
 extern const fg_hub_kind fg_hub_sqlite, fg_hub_postgresql;
