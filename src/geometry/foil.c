@@ -16,6 +16,7 @@
 #include "geometry/foil_kind.h"
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
+#include "geometry/land_deviation.h"
 #include "geometry/recognise.h"
 #include "geometry/shadow_uncertainty.h"
 
@@ -242,6 +243,9 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   flag_mixed_bumps(foil);
   find_rotation(foil);
   if (layout->land_count < 3) foil->flags |= FG_FOIL_FEW_LANDS;
+  bool deviates;
+  FG_TRY(fg_land_deviation_find(ctx, layout, &deviates));
+  if (deviates) foil->flags |= FG_FOIL_LAND_DEVIATES;
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 

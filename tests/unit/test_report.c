@@ -83,7 +83,7 @@ static void every_flag_has_its_words(void **state) {
   for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++)
     bump |= words->flag;
   assert_int_equal(foil, FG_FOIL_OVERALL_RADIUS_LEFT | FG_FOIL_RADIUS_LEFT | FG_FOIL_HEIGHT_LEFT |
-                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_OTHER_THICKNESS - 1));
+                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_LAND_DEVIATES - 1));
   for (const fg_flag_words *words = fg_beam_flag_words(); words->name; words++)
     beam |= words->flag;
   assert_int_equal(beam, 2 * FG_BEAM_NARROW_CUT - 1);
