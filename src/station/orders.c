@@ -154,19 +154,46 @@ static fg_status find_in_folder(fg_context *ctx, const char *path, const char *n
   return status;
 }
 
+/* What the ERP says of an order now; number "": nothing. */
+static fg_status find_in_orders(fg_context *ctx, const char *path, const char *number,
+                                fg_order *order) {
+  struct stat about;
+  *order = (fg_order){0};
+  if (stat(path, &about) == 0 && S_ISDIR(about.st_mode))
+    return find_in_folder(ctx, path, number, order);
+  return find_in_order_file(ctx, path, number, order);
+}
+
+/* Fields that the ERP leaves empty stay. */
+static void update_fields(fg_order *order, const fg_order *now) {
+  for (size_t i = 1; i < COLUMNS; i++) {
+    const char *text = (const char *)now + columns[i].offset;
+    if (text[0]) fg_text_clip((char *)order + columns[i].offset, FG_NAMED_TEXT, "%s", text);
+  }
+  if (now->pieces) order->pieces = now->pieces;
+}
+
 fg_status fg_order_find(fg_context *ctx, sqlite3 *connection, const fg_station_request *request,
                         const char *number, fg_order *order) {
   fg_query query;
-  struct stat about;
+  fg_order now;
+  fg_context inner;
+  bool is_open = false;
   *order = (fg_order){0};
-  fg_query_begin(connection, "SELECT " FIELDS " FROM orders WHERE number = ?", &query);
+  fg_query_begin(connection, "SELECT " FIELDS ", closed_at = 0 FROM orders WHERE number = ?",
+                 &query);
   fg_query_text(&query, number);
-  if (fg_query_row(&query)) read_order_row(&query, order);
+  if (fg_query_row(&query)) {
+    read_order_row(&query, order);
+    is_open = fg_query_get_integer(&query, 9) != 0;
+  }
   FG_TRY(fg_query_end(ctx, &query, "reading the orders"));
-  if (order->id || !request->orders) return FG_OK;
-  if (stat(request->orders, &about) == 0 && S_ISDIR(about.st_mode))
-    return find_in_folder(ctx, request->orders, number, order);
-  return find_in_order_file(ctx, request->orders, number, order);
+  if (is_open || !request->orders) return FG_OK;
+  if (!order->id) return find_in_orders(ctx, request->orders, number, order);
+  /* A known order opens where the files cannot be read. */
+  if (find_in_orders(&inner, request->orders, number, &now) == FG_OK && now.number[0])
+    update_fields(order, &now);
+  return FG_OK;
 }
 
 /* ---- scans ---- */

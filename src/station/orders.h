@@ -18,8 +18,9 @@ typedef struct fg_order {
 /* Reads the open order with its progress; id 0: none is open. */
 fg_status fg_order_read_open(fg_context *ctx, sqlite3 *connection, fg_order *order);
 
-/* Looks an order up by its number: in the database, then in the files of --orders. id is 0 and
- * number "" when nobody knows it; id alone is 0 when a file does. */
+/* Looks an order up by its number in the database and in the files of --orders: of a closed order
+ * what the files say now wins, an open one keeps its fields. id is 0 and number "" when nobody
+ * knows it; id alone is 0 when only a file does. */
 fg_status fg_order_find(fg_context *ctx, sqlite3 *connection, const fg_station_request *request,
                         const char *number, fg_order *order);
 

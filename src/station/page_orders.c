@@ -123,7 +123,7 @@ static fg_status list_orders(fg_context *ctx, sqlite3 *reader, FILE *out) {
   fg_query_begin(reader,
                  "SELECT number, part, lot, pieces, opened_at, closed_at, closed_by, (SELECT"
                  " count(DISTINCT serial) FROM foils WHERE order_id = orders.id) FROM orders ORDER"
-                 " BY id DESC LIMIT ?",
+                 " BY opened_at DESC, id DESC LIMIT ?",
                  &query);
   fg_query_integer(&query, ORDERS_SHOWN);
   for (; fg_query_row(&query); count++) {

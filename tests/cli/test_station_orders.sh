@@ -142,5 +142,19 @@ wait_until(lambda: os.path.exists(work + "/scans/lots/L7/lot.json"))
 rows = list(csv.DictReader(open(work + "/scans/lots/L7/foils.csv")))
 assert rows and all((row["die"], row["coil"], row["order"]) == ("B", "K7", "4711") for row in rows), rows
 assert "coil" not in open(work + "/scans/lots/L9/manifest.csv").readline()
+
+# An order that is opened again has what the ERP says of it now, and is the first of the list; an empty field keeps its
+# value, and the order that is open keeps its fields.
+post("/order-close", order="1", by="Ada")
+with open(work + "/erp/c.csv", "w") as table:
+    table.write("Order;Batch;Tool;Material;Quantity\n4711;L77;;K8;60\n")
+post("/order", number="4711")
+def row():
+    return database.execute("SELECT lot, die, coil, pieces, closed_at, id FROM orders WHERE number = '4711'").fetchone()
+assert row() == ("L77", "B", "K8", 60, 0, 1), row()
+assert re.search(r"<h2>Newest orders</h2>\s*<ul[^>]*>\s*<li><b>4711</b>, lot L77", get("/orders")), get("/orders")
+post("/order", number="4711", lot="L78")
+post("/order", number="4711")
+assert row()[0] == "L78", row()
 print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY
