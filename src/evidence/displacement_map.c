@@ -58,7 +58,7 @@ static void fit_mean(const fg_map_fit *fit, const fg_displacement *mean, double 
 }
 
 /* Returns true where a map follows the mean, between the places of its fit as well. */
-static bool follows(const fg_map_frame *frame, const double *mm, const fg_displacement *mean) {
+static bool follows_mean(const fg_map_frame *frame, const double *mm, const fg_displacement *mean) {
   double missed = 0, all = 0;
   for (int i = 0; i < TESTS * TESTS; i++) {
     double x = (i % TESTS + 0.5) / TESTS, y = (i / TESTS + 0.5) / TESTS;
@@ -87,7 +87,7 @@ static fg_status choose_splines(fg_context *ctx, const fg_displacement *mean, fg
                                 {sides[k][0], sides[k][1]}};
     FG_TRY_EXIT(fg_map_fit_open(ctx, &map->frame, fit));
     fit_mean(fit, mean, moves, map->mm);
-    if (follows(&map->frame, map->mm, mean)) goto exit;
+    if (follows_mean(&map->frame, map->mm, mean)) goto exit;
     fg_map_fit_close(fit);
   }
   fg_field_map_free(map);

@@ -12,7 +12,7 @@
  * blur of the fillets reaches in. */
 #define WINDOW_MM 0.1
 #define MARGIN_MM 0.05
-/* Of clean rendered foils 1 in 100 may reach the limit; of 102 with smooth and rough edges none
+/* Of clean rendered foils 1 in 100 may reach the limit; of 130 with smooth and rough edges none
  * did. Without noise the edge model itself deviates by 0.1 µm. */
 #define SIGMAS      8.0
 #define SMALLEST_MM 0.0003

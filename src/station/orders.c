@@ -154,7 +154,7 @@ static fg_status find_in_folder(fg_context *ctx, const char *path, const char *n
   return status;
 }
 
-/* What the ERP says of an order now; number "": nothing. */
+/* Fills in the order as the ERP has it now; number "": it has none. */
 static fg_status find_in_orders(fg_context *ctx, const char *path, const char *number,
                                 fg_order *order) {
   struct stat about;

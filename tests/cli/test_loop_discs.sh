@@ -142,10 +142,17 @@ near "a shear beside a scale" "$(value small.out "next(c for c in r['claims'] if
 
 # A keystone, which is no effect of plates by name: a map of the picture, and no quadratic of the carriage.
 plate keystone 8 '{"id":"scan.keystone","amplitude_um":12}'
-"$program" loop keystone.png --form discs -o keystone.out || fail "loop on a plate with a keystone"
+"$program" loop keystone.png --form discs -o keystone.out --model-out keystone.model || fail "loop on a plate with a keystone"
 [ "$(value keystone.out "r['verdict'], [c['id'] for c in r['claims']], r['unattributed']['moves']")" = "('unattributed', [], 'x and y')" ] ||
   fail "a keystone is called $(value keystone.out "(r['verdict'], [c['id'] for c in r['claims']])")"
 near "radius after a keystone" "$(error_of keystone.out after)" 0 0.1
+# Its model holds that map, and no curve in place of it.
+[ "$(value keystone.model "r['fields'], r['tied'], 0 < len(r['map']['modes']) <= 64")" = "([], False, True)" ] || fail "the keystone's model is no map"
+valid scan_model.schema.json keystone.model
+"$program" measure keystone.png --form discs --model keystone.model -o keystone.measured --html keystone.page || fail "measure by the keystone's model"
+near "radius by the keystone's model" "$(error_of keystone.measured '')" 0 0.1
+[ "$(value keystone.measured "4 < r['model']['map_half_range_um'] < 8")" = True ] || fail "the map moves $(value keystone.measured "r['model']['map_half_range_um']")"
+grep -q "a smooth displacement of the picture without a name" keystone.page || fail "the page does not say what the map is"
 
 # One ring: an oval and a scale with a shear are one and the same.
 pins='[7,7,6]'
