@@ -265,5 +265,5 @@ fg_status fg_evidence_find_map(fg_context *ctx, fg_evidence_search *s, const fg_
   fg_status status = find_modes(ctx, s, model, weight, models, &fit, map);
   fg_map_fit_close(&fit);
   if (status != FG_OK) fg_field_map_free(map);
-  return status;
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
 }

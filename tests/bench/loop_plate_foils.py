@@ -141,10 +141,10 @@ def write_page(options, rows):
         f"Twelve pins and a foil, {unlisted.DPI} dpi, each warped by the same field of the scanner (those of loop_unlisted.md, 3, 8, 20 um). The"
         " loop on\nthe plate writes a model; the foil is measured without and with it. A kind that has a row in the list is sought without it"
         " (`--without`).\nThe foil is 42 mm wide and reaches beyond the plate by a tenth. Errors are medians of the foils' rms, um: before → after"
-        " (without the\nfault). Intervals: values within U after. Worse: beyond the error before by more than twice that without the fault.\n",
+        " (without the\nfault). Within U: values after. Worse: beyond the error before by more than twice that without the fault.\n",
         f"    /usr/bin/python3 tests/bench/loop_plate_foils.py build/foilgauge --cases {len(rows)} --seed {options.seed}"
         f"{' --unknown' if options.unknown else ''}\n",
-        "| | foils | by a map | R0 | R | h | intervals R0 | R | h | worse | more than twice |\n|" + "---|" * 11,
+        "| | foils | by a map | R0 | R | h | R0 within U | R within U | h within U | worse | more than twice |\n|" + "---|" * 11,
         *[group_row(name, own, noise) for name, own in groups],
     ]  # fmt: skip
     with open(options.out, "w", encoding="utf-8") as file:
