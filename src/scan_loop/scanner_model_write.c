@@ -89,6 +89,17 @@ static fg_status take_map(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_
   return FG_OK;
 }
 
+/* Returns true where the scanner does something without a name. What the edges do by their
+ * direction moves no place of the glass. */
+static bool is_nameless(const fg_scan_loop *loop) {
+  bool nameless = false;
+  for (size_t e = 0; e < loop->set.count; e++) {
+    const fg_effect *kind = loop->set.effects[e].kind;
+    nameless = nameless || (fg_effect_is_free(kind) && kind->glass);
+  }
+  return nameless && loop->map.mm;
+}
+
 static void take_fields(const fg_scan_loop *loop, fg_scanner_model *made) {
   fg_effect_set_fields(&loop->edge_fit, &loop->set, &made->fields);
   take_ties(loop, made);
@@ -109,7 +120,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   made->artefact = first->design.artefact;
   fg_scanner_model_take_temperature(&first->design.calibration, made);
   made->tone = loop->tone;
-  if (loop->map.mm)
+  if (is_nameless(loop))
     status = take_map(ctx, loop, made);
   else
     take_fields(loop, made);
