@@ -399,9 +399,7 @@ static bool is_broken_across(const fg_effect *effect) {
   return effect->columns == BROKEN_NUMBERS && !effect->grid && over_x == moves_y;
 }
 
-/* Returns true for a pulse or a spot: on one arc a dent is as likely, which discs have as a form.
- */
-static bool is_of_one_place(const fg_effect *effect) {
+bool fg_unnamed_is_of_one_place(const fg_effect *effect) {
   return effect->grid == pulse_grid_x || effect->grid == pulse_grid_y || effect->grid == spot_grid;
 }
 
@@ -409,14 +407,14 @@ bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit) {
   if (effect->midline == burr_of_disc)
     return edge_fit->discs && edge_fit->part_count <= BURR_DISCS_MAX;
   if (!edge_fit->discs) return true;
-  if (is_of_one_place(effect)) return false;
+  if (fg_unnamed_is_of_one_place(effect)) return false;
   return effect->jumps ? is_broken_across(effect) : effect->columns != BAND_NUMBERS;
 }
 
 size_t fg_unnamed_of_kind(const fg_effect *effect) {
   size_t count = 0;
   for (const fg_effect *one = fg_unnamed_effects; one->id; one++)
-    count += is_of_one_place(one) == is_of_one_place(effect);
+    count += fg_unnamed_is_of_one_place(one) == fg_unnamed_is_of_one_place(effect);
   return count;
 }
 

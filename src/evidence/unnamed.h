@@ -20,6 +20,10 @@ extern const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1];
  * are seen apart, and both have names. Tilted chips break them across it, which no name has. */
 bool fg_unnamed_shows(const fg_effect *effect, const fg_edge_fit *edge_fit);
 
+/* Returns true for a pulse or a spot: on one arc a dent is as likely, which discs have as a form.
+ */
+bool fg_unnamed_is_of_one_place(const fg_effect *effect);
+
 /* Returns the number of rows of its kind, which share one prior probability: faults at one place of
  * the picture are a kind, the others are one. */
 size_t fg_unnamed_of_kind(const fg_effect *effect);

@@ -369,10 +369,21 @@ static bool is_seen_once(const fg_edge_fit *edge_fit) {
   return edge_fit->view_count == edge_fit->part_count;
 }
 
-/* Returns true where the edges do not tell whether the scanner or the foil does it. */
-static bool is_split_open(const fg_evidence_verdict *v) {
+static bool holds_fault_at_one_place(const fg_evidence_model *model) {
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_effect *effect = model->part[k]->effect;
+    if (effect && fg_unnamed_is_of_one_place(effect)) return true;
+  }
+  return false;
+}
+
+/* Returns true where the edges do not tell whether the scanner or the foil does it. One scan shows
+ * a fault of the picture at one place, and a dent of whatever shape, alike. */
+static bool is_split_open(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v) {
   for (size_t k = 0; k < v->ties; k++)
-    if (is_of_part_alone(&v->tie[k])) return true;
+    if (is_of_part_alone(&v->tie[k]) ||
+        (is_seen_once(edge_fit) && holds_fault_at_one_place(&v->tie[k])))
+      return true;
   return false;
 }
 
@@ -438,7 +449,8 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
     if (*moved) goto exit;
   }
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, false, &verdict));
-  loop->misfit = is_split_open(&verdict) || (!loop->edge_fit.discs && leaves_more(loop, &verdict));
+  loop->misfit = is_split_open(&loop->edge_fit, &verdict) ||
+                 (!loop->edge_fit.discs && leaves_more(loop, &verdict));
   loop->edge_error_um = search.problem.error_um;
   loop->margin = verdict.margin;
   loop->beside_foil_field = is_beside_foil_field(&loop->edge_fit, &verdict);

@@ -35,6 +35,10 @@ near "width of the dent" "$(number dent width_deg)" 1.5 0.1
 "$program" loop dent.png -o once.out || fail "loop on a dent seen once"
 [ "$(value once.out "[c['verdict'] for c in r['claims'] if c['id'] == 'part.dent'], any('free.scan' in a for c in r['claims'] for a in c['alias_class'])")" = \
   "(['tied'], True)" ] || fail "a dent, seen once, is not tied with the picture"
+# Without its name it is not the picture's either: nothing is subtracted from the bump.
+"$program" loop dent.png --without part.dent -o nameless.out || fail "loop on a dent without its name"
+[ "$(value nameless.out "max(abs(a['radius_mm'] - b['radius_mm']) for a, b in zip(r['after']['foils'][0]['bumps'], r['before']['foils'][0]['bumps'])) < 1e-5")" = True ] ||
+  fail "a dent without its name is taken out of the bump"
 "$program" loop dent.png --without part.dent,scan.yaw -o without.out >/dev/null || [ $? = 2 ] || fail "loop without a dent"
 [ "$(value without.out "r['without'], 'part.dent' in str(r['claims']), 'not looked for: part.dent,scan.yaw' in str(r['notes'])")" = \
   "('part.dent,scan.yaw', False, True)" ] || fail "a dent is found though it is left out"
