@@ -46,8 +46,8 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_NO_END, "end_not_found",
      "An end of the strip is hidden, torn or no straight cut: no angle is told."},
     {FG_FOIL_UNEQUAL_RESOLUTION, "unequal_resolution",
-     "The resolutions along x and y differ: radii may be off by more than their uncertainty. Scan "
-     "with equal ones."},
+     "The resolutions along x and y differ: radii and heights may be off by more than their "
+     "uncertainty, and a sound bump may be missed. Scan with equal ones."},
     {FG_FOIL_BEAM_COUNT, "beam_count", "The number of beams is not the one the design states."},
     {FG_FOIL_MISSING_BEAM, "missing_beam", "A place where a beam belongs is empty."},
     {FG_FOIL_BEAM_PLACES_UNKNOWN, "beam_places_unknown",

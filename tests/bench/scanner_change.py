@@ -81,7 +81,7 @@ is laid anew, on the same bed or on one that has changed, and `foilgauge scanner
                     np.median([c['would_show_um'] for c in own])))
         clean = [c for c in cases if c['change'] == 'none']
         out.write("""
-Medians over the beds. Of unchanged scanners 1 %% are meant to be called changed and 9 %% suspected; of the %d here it was %d and %d.
+Medians over the beds. Of unchanged scanners at most 1 %% are called changed and 9 %% suspected, fewer in truth: the whole u of both models counts; of the %d here it was %d and %d.
 A comparison takes %.2f s.
 """ % (len(clean), sum(c['verdict'] == 'changed' for c in clean), sum(c['verdict'] == 'suspected' for c in clean),
             np.median([c['s'] for c in cases])))
