@@ -14,6 +14,7 @@
 #include "evidence/verdict.h"
 #include "rows/scatter.h"
 #include "scan_loop/form_errors.h"
+#include "scan_loop/left_open.h"
 #include "scan_loop/state.h"
 
 /* A fit of another set moves the geometry, and with it the columns: so often. */
@@ -342,62 +343,10 @@ static fg_status search_models(fg_context *ctx, fg_scan_loop *loop, const double
   return fg_evidence_search_run(ctx, search);
 }
 
-static bool is_loose(const fg_evidence_model *model) {
-  for (size_t k = 0; k < model->parts; k++)
-    if (model->part[k]->rival && model->part[k]->rival->loose) return true;
-  return false;
-}
-
-static bool is_of_part_alone(const fg_evidence_model *model) {
-  for (size_t k = 0; k < model->parts; k++)
-    if (model->part[k]->effect ? model->part[k]->effect->glass != NULL
-                               : model->part[k]->rival->glass != NULL)
-      return false;
-  return true;
-}
-
-/* Returns true for a model with a free form of the whole foil. */
-static bool holds_foil_field(const fg_evidence_model *model) {
-  for (size_t k = 0; k < model->parts; k++) {
-    const fg_rival *rival = model->part[k]->rival;
-    if (rival && !rival->glass && rival->coordinate == FG_EFFECT_FOIL) return true;
-  }
-  return false;
-}
-
-static bool is_seen_once(const fg_edge_fit *edge_fit) {
-  return edge_fit->view_count == edge_fit->part_count;
-}
-
-static bool holds_fault_at_one_place(const fg_evidence_model *model) {
-  for (size_t k = 0; k < model->parts; k++) {
-    const fg_effect *effect = model->part[k]->effect;
-    if (effect && fg_unnamed_is_of_one_place(effect)) return true;
-  }
-  return false;
-}
-
-/* Returns true where the edges do not tell whether the scanner or the foil does it. One scan shows
- * a fault of the picture at one place, and a dent of whatever shape, alike. */
-static bool is_split_open(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v) {
-  for (size_t k = 0; k < v->ties; k++)
-    if (is_of_part_alone(&v->tie[k]) ||
-        (is_seen_once(edge_fit) && holds_fault_at_one_place(&v->tie[k])))
-      return true;
-  return false;
-}
-
-/* Returns true where one scan shows the scanner beside a free form of the foil. */
-static bool is_beside_foil_field(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v) {
-  for (size_t k = 0; k < v->ties; k++)
-    if (is_seen_once(edge_fit) && holds_foil_field(&v->tie[k])) return true;
-  return false;
-}
-
 /* Returns true where the mean displacement is not to be trusted beside the rows that it was seen
  * at; discs show their whole rings. */
 static bool leaves_more(const fg_scan_loop *loop, const fg_evidence_verdict *v) {
-  return loop->misfit || (v->ties && is_loose(&v->tie[0]));
+  return loop->misfit || fg_scan_loop_is_loose(v);
 }
 
 /* All that explain as well by the search before. */
@@ -449,11 +398,11 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
     if (*moved) goto exit;
   }
   FG_TRY_EXIT(fg_evidence_decide(ctx, &search, false, &verdict));
-  loop->misfit = is_split_open(&loop->edge_fit, &verdict) ||
+  loop->misfit = fg_scan_loop_is_split_open(&loop->edge_fit, &verdict) ||
                  (!loop->edge_fit.discs && leaves_more(loop, &verdict));
   loop->edge_error_um = search.problem.error_um;
   loop->margin = verdict.margin;
-  loop->beside_foil_field = is_beside_foil_field(&loop->edge_fit, &verdict);
+  loop->beside_foil_field = fg_scan_loop_is_beside_foil_field(&loop->edge_fit, &verdict);
   FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_what_fits(ctx, loop, &search, &verdict, moved));

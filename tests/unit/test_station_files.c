@@ -99,13 +99,13 @@ static void test_names_are_text(void **state) {
   char file[400] = "A\xFF\n-";
   (void)state;
   assert_true(fg_naming_split("{lot}-{serial}", "A\xFF\n-b.png", &named));
-  assert_string_equal(named.lot, "A\xEF\xBF\xBD\xEF\xBF\xBD");
+  assert_string_equal(named.lot, "A\xEF\xBF\xBD\xEF\xBF\xBD~6e91b61a"); /* of its bytes */
   assert_string_equal(named.serial, "b");
   for (int i = 0; i < 60; i++) /* cut off between characters, never in one */
     strcat(file, "\xE2\x82\xAC");
   assert_true(fg_naming_split("{lot}-{serial}", file, &named));
   assert_true(fg_utf8_is_valid(named.serial));
-  assert_int_equal(strlen(named.serial), 126);
+  assert_true(strlen(named.serial) <= 127 && strchr(named.serial, '~'));
 }
 
 int main(void) {
