@@ -37,9 +37,12 @@ fg_point fg_displacement_at(const fg_displacement *d, fg_point at) {
 
 /* ---- the mean ---- */
 
+const fg_effect *fg_evidence_glass_effect(const fg_evidence_part *part) {
+  return part->effect->polynomial ? &fg_effect_powers[part->effect->axis] : part->effect;
+}
+
 static double *amplitudes_of_effect(const fg_evidence_part *part, fg_displacement *d) {
-  const fg_effect *effect =
-      part->effect->polynomial ? &fg_effect_powers[part->effect->axis] : part->effect;
+  const fg_effect *effect = fg_evidence_glass_effect(part);
   for (size_t e = 0; e < d->effects; e++)
     if (d->effect[e].effect == effect && d->effect[e].columns == part->count &&
         !memcmp(d->effect[e].shape, part->shape, sizeof part->shape))

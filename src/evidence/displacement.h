@@ -31,6 +31,10 @@ size_t fg_evidence_list_window(const fg_evidence_search *search, bool decided,
                                const fg_evidence_model *list[FG_EVIDENCE_WINDOW],
                                double weight[FG_EVIDENCE_WINDOW]);
 
+/* Returns the effect whose columns a part has on the glass: of a polynomial the powers of its axis.
+ */
+const fg_effect *fg_evidence_glass_effect(const fg_evidence_part *part);
+
 /* Returns the displacement of a place on the glass, mm. */
 fg_point fg_displacement_at(const fg_displacement *displacement, fg_point at);
 

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "effect/columns.h"
 #include "field/map_fit.h"
 
 /* Weight up to which models that have no map are left out. */
@@ -61,9 +60,7 @@ static void fit_mean(const fg_map_fit *fit, const fg_displacement *mean, double 
 static bool follows_mean(const fg_map_frame *frame, const double *mm, const fg_displacement *mean) {
   double missed = 0, all = 0;
   for (int i = 0; i < TESTS * TESTS; i++) {
-    double x = (i % TESTS + 0.5) / TESTS, y = (i / TESTS + 0.5) / TESTS;
-    fg_point at = {frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
-                   frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
+    fg_point at = fg_map_place(frame, (i % TESTS + 0.5) / TESTS, (i / TESTS + 0.5) / TESTS);
     fg_point d = fg_displacement_at(mean, at), m = fg_map_at(frame, mm, at);
     missed += pow(d.x - m.x, 2) + pow(d.y - m.y, 2);
     all += d.x * d.x + d.y * d.y;
@@ -108,9 +105,7 @@ static size_t displacements_of(const fg_evidence_part *part, const fg_field_fram
            part->count * sizeof *d);
     return part->count;
   }
-  const fg_effect *effect =
-      part->effect->polynomial ? &fg_effect_powers[part->effect->axis] : part->effect;
-  effect->glass(frame, part->shape, at, d);
+  fg_evidence_glass_effect(part)->glass(frame, part->shape, at, d);
   return part->count;
 }
 
@@ -122,10 +117,9 @@ typedef struct covariance_work {
   gsl_vector *mean;
 } covariance_work;
 
-/* Splines of every scanner's column of a model, row by row, um per um; `index`: of the columns in
- * the posterior. */
+/* Splines of every scanner's column of a model, row by row, um per um. */
 static fg_status fit_columns(fg_context *ctx, const covariance_work *work,
-                             const fg_evidence_model *model, gsl_matrix *splines, size_t *index) {
+                             const fg_evidence_model *model, gsl_matrix *splines) {
   const fg_map_fit *fit = work->fit;
   size_t at = 0;
   for (size_t k = 0; k < model->parts; k++) {
@@ -141,26 +135,18 @@ static fg_status fit_columns(fg_context *ctx, const covariance_work *work,
         moves[2 * (c * fit->places + p) + 1] = d[c].y;
       }
     }
-    for (size_t c = 0; c < part->count; c++) {
-      index[at] = fg_evidence_first_of(work->search, model, k) + c;
+    for (size_t c = 0; c < part->count; c++)
       fg_map_fit_splines(fit, moves + 2 * c * fit->places, gsl_matrix_ptr(splines, at++, 0));
-    }
     free(moves);
   }
   return FG_OK;
 }
 
-static size_t count_scanner_columns(const fg_evidence_model *model) {
-  size_t count = 0;
-  for (size_t k = 0; k < model->parts; k++)
-    if (fg_evidence_is_of_scanner(model->part[k])) count += model->part[k]->count;
-  return count;
-}
-
 static fg_status add_moments(fg_context *ctx, const fg_evidence_model *model,
                              const fg_evidence_posterior *posterior, double weight,
                              covariance_work *work) {
-  size_t n = count_scanner_columns(model), *index = NULL;
+  size_t index[FG_EVIDENCE_MODEL_COLUMNS];
+  size_t n = fg_evidence_list_scanner_columns(work->search, model, index);
   if (!n) return FG_OK;
   gsl_matrix *splines = gsl_matrix_calloc(n, work->numbers);
   gsl_matrix *covariance = gsl_matrix_calloc(n, n), *times = gsl_matrix_calloc(n, work->numbers);
@@ -170,8 +156,7 @@ static fg_status add_moments(fg_context *ctx, const fg_evidence_model *model,
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu splines", work->numbers);
     goto exit;
   }
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *index, (void **)&index));
-  FG_TRY_EXIT(fit_columns(ctx, work, model, splines, index));
+  FG_TRY_EXIT(fit_columns(ctx, work, model, splines));
   for (size_t i = 0; i < n; i++) {
     gsl_vector_set(mean, i, MM_PER_UM * posterior->mean[index[i]]);
     for (size_t k = 0; k < n; k++)
@@ -190,7 +175,6 @@ exit:
   gsl_matrix_free(times);
   gsl_vector_free(mean);
   gsl_vector_free(own);
-  free(index);
   return status;
 }
 

@@ -125,15 +125,21 @@ fg_status fg_evidence_shift_add(fg_context *ctx, fg_evidence_search *s,
   return status;
 }
 
+size_t fg_evidence_list_scanner_columns(const fg_evidence_search *s, const fg_evidence_model *model,
+                                        size_t list[FG_EVIDENCE_MODEL_COLUMNS]) {
+  size_t n = 0;
+  for (size_t k = 0; k < model->parts; k++)
+    for (size_t c = 0; fg_evidence_is_of_scanner(model->part[k]) && c < model->part[k]->count; c++)
+      list[n++] = fg_evidence_first_of(s, model, k) + c;
+  return n;
+}
+
 fg_status fg_evidence_shift_add_posterior(fg_context *ctx, fg_evidence_search *s,
                                           const fg_evidence_model *model,
                                           const fg_evidence_posterior *posterior, double weight,
                                           fg_evidence_shift *w) {
-  size_t n = 0, list[FG_EVIDENCE_MODEL_COLUMNS];
+  size_t list[FG_EVIDENCE_MODEL_COLUMNS], n = fg_evidence_list_scanner_columns(s, model, list);
   double *follow = NULL;
-  for (size_t k = 0; k < model->parts; k++)
-    for (size_t c = 0; fg_evidence_is_of_scanner(model->part[k]) && c < model->part[k]->count; c++)
-      list[n++] = fg_evidence_first_of(s, model, k) + c;
   FG_TRY(fg_memory_allocate(ctx, (n + 1) * (2 * w->count + 2) + s->scatter.count, sizeof *follow,
                             (void **)&follow));
   double *times = follow + n * w->count, *own = times + w->count, *sizes = own + w->count;

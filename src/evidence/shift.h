@@ -41,4 +41,9 @@ void fg_evidence_shift_spread(const fg_edge_fit *edge_fit, const fg_evidence_shi
 
 bool fg_evidence_is_of_scanner(const fg_evidence_part *part);
 
+/* Lists the scanner's columns of a model by their index in its posterior; returns their number. */
+size_t fg_evidence_list_scanner_columns(const fg_evidence_search *search,
+                                        const fg_evidence_model *model,
+                                        size_t list[FG_EVIDENCE_MODEL_COLUMNS]);
+
 #endif

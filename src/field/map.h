@@ -17,6 +17,12 @@ typedef struct fg_map_frame {
   size_t side[2]; /* number of splines along x and along y */
 } fg_map_frame;
 
+/* Returns the place at shares x and y of the way over the region. */
+static inline fg_point fg_map_place(const fg_map_frame *frame, double x, double y) {
+  return (fg_point){frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
+                    frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
+}
+
 /* A spline that is not 0 at a place, and its value there. */
 typedef struct fg_map_weight {
   size_t spline; /* row by row */

@@ -22,8 +22,7 @@ static fg_status list_places(fg_context *ctx, fg_map_fit *fit) {
   FG_TRY(fg_memory_allocate(ctx, fit->places, sizeof *fit->at, (void **)&fit->at));
   for (size_t k = 0; k < fit->places; k++) {
     double x = (double)(k % nx) / (double)(nx - 1), y = (double)(k / nx) / (double)(ny - 1);
-    fit->at[k] = (fg_point){frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
-                            frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
+    fit->at[k] = fg_map_place(frame, x, y);
   }
   return FG_OK;
 }

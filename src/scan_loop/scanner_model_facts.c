@@ -31,9 +31,7 @@ static double map_half_range_um(const fg_scanner_model *model) {
   enum { GRID = 33 };
   fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
   for (int i = 0; i < GRID * GRID; i++) {
-    double x = i % GRID / (GRID - 1.0), y = i / GRID / (GRID - 1.0);
-    fg_point at = {frame->low_mm[0] + x * (frame->high_mm[0] - frame->low_mm[0]),
-                   frame->low_mm[1] + y * (frame->high_mm[1] - frame->low_mm[1])};
+    fg_point at = fg_map_place(frame, i % GRID / (GRID - 1.0), i / GRID / (GRID - 1.0));
     fg_point d = fg_map_at(frame, model->fields.map_mm, at);
     low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
     high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
