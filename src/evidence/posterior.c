@@ -17,25 +17,21 @@ static void solve_backward(size_t n, const double *lower, double *v) {
   }
 }
 
-/* Inverse of a lower triangular matrix; `inverse` is zero. */
+/* Inverse of a lower triangular matrix, transposed, so that its columns are contiguous; `inverse`
+ * is zero. */
 static void invert_lower(size_t n, const double *lower, double *inverse) {
   for (size_t c = 0; c < n; c++) {
-    inverse[c * n + c] = 1 / lower[c * n + c];
-    for (size_t i = c + 1; i < n; i++) {
-      double sum = 0;
-      for (size_t k = c; k < i; k++)
-        sum += lower[i * n + k] * inverse[k * n + c];
-      inverse[i * n + c] = -sum / lower[i * n + i];
-    }
+    double *column = inverse + c * n;
+    column[c] = 1 / lower[c * n + c];
+    for (size_t i = c + 1; i < n; i++)
+      column[i] = -fg_dot_in_lanes(lower + i * n + c, column + c, i - c) / lower[i * n + i];
   }
 }
 
 static void fill_covariance(size_t n, const double *inverse, const double *root, double *to) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k <= i; k++) {
-      double sum = 0;
-      for (size_t j = i; j < n; j++)
-        sum += inverse[j * n + i] * inverse[j * n + k];
+      double sum = fg_dot_in_lanes(inverse + i * n + i, inverse + k * n + i, n - i);
       to[i * n + k] = to[k * n + i] = root[i] * root[k] * sum;
     }
 }
