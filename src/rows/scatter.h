@@ -28,6 +28,8 @@ fg_status fg_edge_fit_find_scatter(fg_context *ctx, fg_edge_fit *edge_fit,
 fg_status fg_edge_fit_take_shared(fg_context *ctx, const fg_edge_fit *edge_fit,
                                   const bool *left_out, double *weighted, size_t *numbers);
 
+enum { FG_WHITENING_QUARTERS = 4 };
+
 /* Makes rows independent. Values of smooth functions keep their size: a sum of squares of whitened
  * values is that of generalised least squares, in units of fg_scatter.integral times the variance
  * of a row. */
@@ -38,9 +40,10 @@ typedef struct fg_whitening {
                      exponential: decay of the state, and its gain */
   double *scale;  /* owned; of the row's innovation */
   bool exponential;
-  double unit;            /* size of a whitened value that represents unit variance */
-  bool *first;            /* owned; rows that start an arc */
-  double log_determinant; /* of the correlation, over all rows in use */
+  double unit; /* size of a whitened value that represents unit variance */
+  bool *first; /* owned; rows that start an arc */
+  size_t quarter[FG_WHITENING_QUARTERS + 1]; /* their bounds, at starts of arcs */
+  double log_determinant;                    /* of the correlation, over all rows in use */
 } fg_whitening;
 
 /* Returns the root of a row's weight: 1 for a whole block. */

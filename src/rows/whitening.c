@@ -100,6 +100,16 @@ static void filter(const fg_edge_fit *edge_fit, fg_whitening *w) {
   }
 }
 
+/* Ends the quarters at starts of arcs. */
+static void find_quarters(fg_whitening *w) {
+  for (size_t q = 0; q <= FG_WHITENING_QUARTERS; q++) {
+    size_t i = q * w->rows / FG_WHITENING_QUARTERS;
+    while (i < w->rows && !w->first[i])
+      i++;
+    w->quarter[q] = i;
+  }
+}
+
 static fg_status allocate_whitening(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whitening *w) {
   const fg_scatter *s = &edge_fit->scatter;
   w->rows = edge_fit->row_count;
@@ -120,6 +130,7 @@ fg_status fg_whitening_open(fg_context *ctx, const fg_edge_fit *edge_fit, fg_whi
     w->used[i] = edge_fit->rows[i].weight > 0;
   for (size_t i = 0; i < w->rows; i = fg_edge_fit_arc_end(edge_fit, i))
     w->first[i] = true;
+  find_quarters(w);
   if (w->exponential)
     filter(edge_fit, w);
   else
@@ -141,41 +152,63 @@ void fg_whitening_close(fg_whitening *w) {
   *w = (fg_whitening){.rows = 0};
 }
 
-static void apply_factor(const fg_whitening *w, double *v) {
-  for (size_t i = 0, start = 0; i < w->rows; i++) {
-    if (w->first[i]) start = i;
-    if (!w->used[i]) {
-      v[i] = 0;
-      continue;
-    }
-    const double *before = w->before + i * w->band;
-    size_t reach = i - start < w->band ? i - start : w->band;
-    double sum = 0;
-    for (size_t k = 1; k <= reach; k++)
-      sum += before[k - 1] * v[i - k];
-    v[i] = (v[i] - sum * w->unit) * w->scale[i];
+/* Where a filter of rows in their order is. */
+typedef struct run {
+  size_t row, start; /* start: of the row's arc */
+  double state;
+} run;
+
+static inline void factor_next(const fg_whitening *w, double *v, run *at) {
+  size_t i = at->row++;
+  if (w->first[i]) at->start = i;
+  if (!w->used[i]) {
+    v[i] = 0;
+    return;
   }
+  const double *before = w->before + i * w->band;
+  size_t reach = i - at->start < w->band ? i - at->start : w->band;
+  double sum = 0;
+  for (size_t k = 1; k <= reach; k++)
+    sum += before[k - 1] * v[i - k];
+  v[i] = (v[i] - sum * w->unit) * w->scale[i];
 }
 
-static void apply_filter(const fg_whitening *w, double *v) {
-  double state = 0;
-  for (size_t i = 0; i < w->rows; i++) {
-    if (w->first[i]) state = 0;
-    if (!w->used[i]) {
-      v[i] = 0;
-      continue;
-    }
-    state *= w->before[2 * i];
-    double innovation = v[i] - state;
-    state += w->before[2 * i + 1] * innovation;
-    v[i] = innovation * w->scale[i];
+static inline void filter_next(const fg_whitening *w, double *v, run *at) {
+  size_t i = at->row++;
+  if (w->first[i]) at->state = 0;
+  if (!w->used[i]) {
+    v[i] = 0;
+    return;
   }
+  at->state *= w->before[2 * i];
+  double innovation = v[i] - at->state;
+  at->state += w->before[2 * i + 1] * innovation;
+  v[i] = innovation * w->scale[i];
+}
+
+/* No arc knows of the ones before it, so quarters of the rows are whitened side by side: in a
+ * single run, each row would wait for the row before. */
+static inline void apply(const fg_whitening *w, double *v,
+                         void (*next)(const fg_whitening *, double *, run *)) {
+  run at[FG_WHITENING_QUARTERS];
+  size_t common = w->rows;
+  for (size_t q = 0; q < FG_WHITENING_QUARTERS; q++) {
+    size_t from = w->quarter[q], count = w->quarter[q + 1] - from;
+    at[q] = (run){from, from, 0};
+    common = count < common ? count : common;
+  }
+  for (size_t i = 0; i < common; i++)
+    for (size_t q = 0; q < FG_WHITENING_QUARTERS; q++)
+      next(w, v, &at[q]);
+  for (size_t q = 0; q < FG_WHITENING_QUARTERS; q++)
+    while (at[q].row < w->quarter[q + 1])
+      next(w, v, &at[q]);
 }
 
 void fg_whitening_apply(const fg_whitening *w, double *values) {
   if (!w->band) return;
   if (w->exponential)
-    apply_filter(w, values);
+    apply(w, values, filter_next);
   else
-    apply_factor(w, values);
+    apply(w, values, factor_next);
 }
