@@ -8,35 +8,33 @@
 
 _Static_assert((int)FG_SCANNER_MODEL_EFFECTS >= (int)FG_FIELDS_MAX, "every field has its place");
 
-/* Returns the half range, um, of an effect's larger component in the region. */
-static double half_range_um(const fg_field_list *list, size_t index) {
-  enum { GRID = 33 };
+/* Returns the half range, um, of the larger component of a displacement in its region. */
+static double half_range_um(const fg_field_list *list) {
+  enum { GRID = 65 };
   const fg_field_frame *f = &list->frame;
-  fg_field_list one = {.frame = *f, .fields = {list->fields[index]}, .count = 1};
   fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
-  for (int i = 0; i < GRID; i++) { /* every field varies along one axis, or alike along both */
-    double t = i / (GRID - 1.0);
-    fg_point d = fg_field_at(&one, (fg_point){f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
-                                              f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])});
+  for (int i = 0; i < GRID * GRID; i++) {
+    double tx = i % GRID / (GRID - 1.0), ty = i / GRID / (GRID - 1.0);
+    fg_point d = fg_field_at(list, (fg_point){f->low_mm[0] + tx * (f->high_mm[0] - f->low_mm[0]),
+                                              f->low_mm[1] + ty * (f->high_mm[1] - f->low_mm[1])});
     low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
     high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
   }
   return 500 * fmax(high.x - low.x, high.y - low.y);
 }
 
-/* Likewise, of the map; NaN: there is none. */
+static double effect_half_range_um(const fg_scanner_model *model, size_t index) {
+  const fg_field_list *all = &model->fields;
+  return half_range_um(
+      &(fg_field_list){.frame = all->frame, .fields = {all->fields[index]}, .count = 1});
+}
+
+/* Returns NaN where there is no map. */
 static double map_half_range_um(const fg_scanner_model *model) {
-  const fg_map_frame *frame = model->fields.map;
-  if (!frame) return NAN;
-  enum { GRID = 33 };
-  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
-  for (int i = 0; i < GRID * GRID; i++) {
-    fg_point at = fg_map_place(frame, i % GRID / (GRID - 1.0), i / GRID / (GRID - 1.0));
-    fg_point d = fg_map_at(frame, model->fields.map_mm, at);
-    low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
-    high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
-  }
-  return 500 * fmax(high.x - low.x, high.y - low.y);
+  const fg_field_list *all = &model->fields;
+  if (!all->map) return NAN;
+  return half_range_um(
+      &(fg_field_list){.frame = all->frame, .map = all->map, .map_mm = all->map_mm});
 }
 
 static fg_effect_found effect_of(const fg_field *field) {
@@ -82,6 +80,6 @@ void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_f
     one->id = effect.kind->id;
     one->words = effect.kind->words;
     one->parameters = fg_scan_result_put_parameters(&effect, one->parameter);
-    one->half_range_um = half_range_um(&model->fields, i);
+    one->half_range_um = effect_half_range_um(model, i);
   }
 }

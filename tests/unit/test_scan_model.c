@@ -128,6 +128,36 @@ static void a_written_scanner_model_reads_back_equal(void **state) {
   free_loop(loop);
 }
 
+/* A keystone moves the corners that no single diagonal passes. */
+static void an_effect_is_told_by_its_half_range_over_the_plane(void **state) {
+  fg_context ctx = {0};
+  fg_scanner_model *model = NULL;
+  fg_scanner_model_facts facts;
+  fg_scan_loop *loop = make_loop();
+  double low = INFINITY, high = -INFINITY;
+  (void)state;
+  loop->tied = false;
+  loop->tie_count = loop->set.count = 0;
+  add_effect(&loop->set, "scan.keystone", 0, 7, 0);
+  decide(loop);
+  char *text = write_text(loop);
+  if (fg_scanner_model_parse(&ctx, "written.json", text, &model) != FG_OK)
+    fail_msg("%s", ctx.message);
+  const fg_field_frame *f = &model->fields.frame;
+  for (int i = 0; i < 4; i++) {
+    fg_point at = {i % 2 ? f->high_mm[0] : f->low_mm[0], i / 2 ? f->high_mm[1] : f->low_mm[1]};
+    double x = fg_field_at(&model->fields, at).x;
+    low = fmin(low, x);
+    high = fmax(high, x);
+  }
+  assert_true(low < 0 && high > 0);
+  fg_scanner_model_describe(model, &facts);
+  assert_near(facts.effect[0].half_range_um, 500 * (high - low), 1e-6);
+  fg_scanner_model_free(model);
+  free(text);
+  free_loop(loop);
+}
+
 /* A model that its own reader would refuse is not written. */
 static void unreadable_scanner_models_are_not_written(void **state) {
   fg_context ctx = {0};
@@ -243,6 +273,7 @@ static void possible_scanner_models_are_accepted(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_written_scanner_model_reads_back_equal),
+      cmocka_unit_test(an_effect_is_told_by_its_half_range_over_the_plane),
       cmocka_unit_test(unreadable_scanner_models_are_not_written),
       cmocka_unit_test(impossible_scanner_models_are_refused),
       cmocka_unit_test(possible_scanner_models_are_accepted),
