@@ -386,6 +386,7 @@ typedef struct fg_measurement {
   char model_sha256[65]; /* of the scanner's model that corrected it; "": none */
   const struct fg_scanner_model *model; /* the model; not owned; NULL: none */
   int64_t width_px, height_px;
+  int averaged[2]; /* columns and rows of the file that became one pixel, as in fg_scan_info */
   int bit_depth;
   double dpi[2];      /* used, x and y: as stated, over the length factor of the calibration */
   double dpi_file[2]; /* of the file, before it was snapped; NaN without */

@@ -7,8 +7,10 @@
  * 16 when the file has 16, else 8. Fewer bits are spread over 0 to 255; TIFF's min-is-white is
  * turned round. Of colours one channel is taken, or the luminance (Rec. 709 weights; of a JPEG the
  * one that it holds, Rec. 601); alpha and infrared are dropped. Interlaced PNG are decoded whole in
- * memory and served row by row. CRC errors and truncation are fatal. A TIFF on a pipe is stored in
- * an unnamed temporary file first (TMPDIR), and so is anything whose channel must be found.
+ * memory and served row by row. Where a file says that one resolution is a whole multiple of the
+ * other, as 4800 × 2400 dpi, so many columns or rows are averaged to one: pixels are square. CRC
+ * errors and truncation are fatal. A TIFF on a pipe is stored in an unnamed temporary file first
+ * (TMPDIR), and so is anything whose channel must be found.
  */
 #ifndef FOILGAUGE_SCAN_H
 #define FOILGAUGE_SCAN_H
@@ -44,6 +46,8 @@ typedef enum fg_channel {
 
 typedef struct fg_scan_options {
   double dpi;          /* 0: the file's; else used for both axes, file or not */
+  int averaged[2];     /* columns and rows that become one pixel; 0: as the file's resolutions ask
+                          for, where `dpi` is 0 */
   uint64_t pixel_cap;  /* refuse larger ones; 0: FG_SCAN_PIXEL_CAP */
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
@@ -59,10 +63,12 @@ typedef struct fg_scan_options {
  * to the file's at the frequencies of edges. It is the last compression's: an image that was saved
  * twice has lost more. */
 typedef struct fg_scan_info {
-  int64_t width_px, height_px;
-  int bit_depth;         /* of the file: 1, 2, 4, 8, 16 */
-  int bytes_per_pixel;   /* of the rows: 1 or 2 (host byte order, uint16_t) */
-  double dpi[2];         /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
+  int64_t width_px, height_px; /* of the rows that are read: after averaging */
+  int averaged[2];             /* columns and rows of the file that became one pixel: 1, 1 mostly */
+  int bit_depth;               /* of the file: 1, 2, 4, 8, 16 */
+  int bytes_per_pixel;         /* of the rows: 1 or 2 (host byte order, uint16_t) */
+  double dpi[2]; /* x, y, of the rows that are read; snapped to the nearest whole dpi when within
+                    0.02 dpi */
   double dpi_file[2];    /* of the file, before snapping; NaN when it states none */
   const char *format;    /* its name, one of fg_scan_format_names */
   int jpeg_quality;      /* of a lossy scan: 1 to 100, see above; 0: lossless */

@@ -150,6 +150,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   m->colour = info->colour;
   m->channel = info->channel;
   for (int i = 0; i < 2; i++) {
+    m->averaged[i] = info->averaged[i];
     m->dpi[i] = info->dpi[i];
     m->dpi_file[i] = info->dpi_file[i];
   }
@@ -175,7 +176,7 @@ static void clear_failed(const fg_measure_options *options, fg_scan *scan, fg_me
 static unsigned check_resolution(fg_measurement *m) {
   unsigned flags = 0;
   for (int axis = 0; axis < 2; axis++)
-    if (fabs(m->dpi[axis] / m->dpi_file[axis] - 1) > CONTRADICTION)
+    if (fabs(m->averaged[axis] * m->dpi[axis] / m->dpi_file[axis] - 1) > CONTRADICTION)
       flags |= FG_FOIL_RESOLUTION_CONTRADICTS_FILE;
   if (fabs(log(m->dpi[0] / m->dpi[1])) > UNEQUAL) flags |= FG_FOIL_UNEQUAL_RESOLUTION;
   if (m->warning[0]) return flags;

@@ -132,6 +132,7 @@ fg_status fg_picture_load(fg_context *ctx, const fg_measurement *measurement,
                           const int64_t box_px[4], int32_t width_max, double pixels_max,
                           fg_picture *picture) {
   const fg_scan_options options = {.dpi = measurement->dpi[0],
+                                   .averaged = {measurement->averaged[0], measurement->averaged[1]},
                                    .pixel_cap = UINT64_MAX,
                                    .channel = measurement->channel,
                                    .allow_lossy = true,

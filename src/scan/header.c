@@ -10,6 +10,10 @@
 #define ROUND_DPI  50.0 /* resolutions of scanners are multiples of it */
 #define ADVICE_DPI "give the resolution with --dpi"
 
+/* Resolutions whose ratio is whole but for so much, and no more than this, are averaged. */
+#define RATIO_ERROR  1e-3
+#define AVERAGED_MAX 8
+
 void fg_scan_warn(char *warning, size_t size, const char *format, ...) {
   va_list values;
   size_t used = strlen(warning);
@@ -60,10 +64,26 @@ static fg_status check_file(fg_context *ctx, const char *name, const fg_scan_hea
   return FG_OK;
 }
 
-fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_header *header,
-                             double dpi, fg_scan_info *info) {
-  for (int axis = 0; axis < 2; axis++)
-    info->dpi_file[axis] = header->dpi[axis];
+/* Returns by which whole number the finer resolution exceeds the coarser one; 1: by none. */
+static int whole_ratio(double finer, double coarser) {
+  double ratio = finer / coarser, whole = round(ratio);
+  return whole <= AVERAGED_MAX && fabs(ratio / whole - 1) <= RATIO_ERROR ? (int)whole : 1;
+}
+
+/* Makes pixels square: an edge that is blurred alike in all directions is to be so in pixels. */
+static void average_finer(fg_scan_info *info) {
+  int finer = info->dpi[0] > info->dpi[1] ? 0 : 1;
+  int ratio = whole_ratio(info->dpi[finer], info->dpi[1 - finer]);
+  if (ratio == 1) return;
+  fg_scan_warn(info->warning, sizeof info->warning,
+               "it has %.6g × %.6g dpi: each %d %s were averaged to one, so that pixels are square",
+               info->dpi[0], info->dpi[1], ratio, finer ? "rows" : "columns");
+  info->averaged[finer] = ratio;
+  info->dpi[finer] /= ratio;
+}
+
+static fg_status find_dpi(fg_context *ctx, const char *name, const fg_scan_header *header,
+                          double dpi, fg_scan_info *info) {
   if (dpi != 0) {
     info->dpi[0] = info->dpi[1] = dpi;
     return FG_OK;
@@ -76,5 +96,18 @@ fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_he
     fg_scan_warn(info->warning, sizeof info->warning,
                  "it counts whole dots per cm, %.6g × %.6g dpi: %.6g × %.6g were taken",
                  header->dpi[0], header->dpi[1], info->dpi[0], info->dpi[1]);
+  return FG_OK;
+}
+
+fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_header *header,
+                             const fg_scan_options *options, fg_scan_info *info) {
+  for (int axis = 0; axis < 2; axis++) {
+    info->dpi_file[axis] = header->dpi[axis];
+    info->averaged[axis] = options->averaged[axis] ? options->averaged[axis] : 1;
+  }
+  FG_TRY(find_dpi(ctx, name, header, options->dpi, info));
+  if (options->dpi == 0 && !options->averaged[0]) average_finer(info);
+  info->width_px /= info->averaged[0];
+  info->height_px /= info->averaged[1];
   return FG_OK;
 }

@@ -44,8 +44,9 @@ typedef struct fg_scan_header {
 void fg_scan_warn(char *warning, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Fills dpi and dpi_file of `info`. `dpi` 0 uses the file's. Errors as fg_scan_open's. */
+/* Fills dpi, dpi_file and averaged of `info`, and its size. `dpi` 0 uses the file's. Errors as
+ * fg_scan_open's. */
 fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_header *header,
-                             double dpi, fg_scan_info *info);
+                             const fg_scan_options *options, fg_scan_info *info);
 
 #endif

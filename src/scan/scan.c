@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/sha256.h"
+#include "scan/average.h"
 #include "scan/contrast.h"
 #include "scan/format.h"
 #include "scan/gray.h"
@@ -21,13 +22,16 @@ struct fg_scan {
   void *reader; /* of the format */
   fg_scan_header header;
   fg_gray gray;
-  fg_gray colours[3]; /* after fg_scan_begin_colours */
-  void *samples;      /* buffer for a row of samples; NULL where they need no conversion */
+  fg_gray colours[3];     /* after fg_scan_begin_colours */
+  void *samples;          /* buffer for a row of samples; NULL where they need no conversion */
+  fg_average average;     /* of the gray rows */
+  fg_average averages[3]; /* of the colours */
+  void *fine;             /* a gray row before it is averaged; NULL: none is */
   fg_scan_info info;
   unsigned threads;
-  int64_t rows_read;
-  bool broken; /* an error ended the reading */
-  bool ended;  /* all was read and checked, to the end of the file */
+  int64_t rows_read; /* of the file */
+  bool broken;       /* an error ended the reading */
+  bool ended;        /* all was read and checked, to the end of the file */
 };
 
 static fg_status find_format(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
@@ -118,7 +122,7 @@ static fg_status begin_again(fg_context *ctx, const fg_scan_options *options, fg
 /* Reads the scan once to find the channel, and begins again. */
 static fg_status find_channel(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
   fg_contrast contrast = {.header = &scan->header};
-  for (int64_t y = 0; y < scan->info.height_px; y++) {
+  for (int64_t y = 0; y < (int64_t)scan->header.height_px; y++) {
     FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
     fg_contrast_add_row(&contrast, y, scan->samples);
   }
@@ -134,12 +138,35 @@ static fg_status prepare_rows(fg_context *ctx, const fg_scan_options *options, f
   if (options->channel == FG_CHANNEL_AUTO) scan->info.channel = FG_CHANNEL_LUMINANCE;
   fg_gray_init(&scan->header, scan->info.channel, &scan->gray);
   if (!scan->gray.convert) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, (size_t)scan->info.width_px, count_sample_bytes(scan),
+  FG_TRY(fg_memory_allocate(ctx, (size_t)scan->header.width_px, count_sample_bytes(scan),
                             &scan->samples));
   if (!find) return FG_OK;
   FG_TRY(find_channel(ctx, options, scan));
   fg_gray_init(&scan->header, scan->info.channel, &scan->gray);
   return FG_OK;
+}
+
+static bool is_averaged(const fg_scan *scan) {
+  return scan->info.averaged[0] > 1 || scan->info.averaged[1] > 1;
+}
+
+static fg_status open_average(fg_context *ctx, const fg_scan *scan, fg_average *average) {
+  const fg_scan_info *info = &scan->info;
+  *average = (fg_average){.columns = info->averaged[0],
+                          .rows = info->averaged[1],
+                          .width = (size_t)info->width_px,
+                          .bytes_per_pixel = info->bytes_per_pixel};
+  return fg_average_open(ctx, average);
+}
+
+static fg_status prepare_averages(fg_context *ctx, fg_scan *scan) {
+  if (!is_averaged(scan)) return FG_OK;
+  if (scan->info.width_px == 0 || scan->info.height_px == 0)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: has too few pixels for its resolutions; scan it again",
+                   scan->source.name);
+  FG_TRY(fg_memory_allocate(ctx, (size_t)scan->header.width_px, (size_t)scan->info.bytes_per_pixel,
+                            &scan->fine));
+  return open_average(ctx, scan, &scan->average);
 }
 
 static fg_status open_scan(fg_context *ctx, const char *path, const fg_scan_options *options,
@@ -152,7 +179,8 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_scan_opti
   FG_TRY(find_format(ctx, options, scan));
   FG_TRY(open_format(ctx, options, scan));
   fill_info(scan);
-  FG_TRY(fg_resolution_find(ctx, scan->source.name, &scan->header, options->dpi, &scan->info));
+  FG_TRY(fg_resolution_find(ctx, scan->source.name, &scan->header, options, &scan->info));
+  FG_TRY(prepare_averages(ctx, scan));
   return prepare_rows(ctx, options, scan);
 }
 
@@ -197,7 +225,7 @@ static size_t count_row_bytes(const fg_scan *scan) {
 }
 
 static fg_status convert_row(fg_context *ctx, fg_scan *scan, void *out) {
-  size_t width = (size_t)scan->info.width_px;
+  size_t width = (size_t)scan->header.width_px;
   FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
   size_t invalid = fg_gray_find_invalid(&scan->gray, scan->samples, width);
   if (invalid < width)
@@ -217,21 +245,44 @@ static fg_status read_one_row(fg_context *ctx, fg_scan *scan, void *out) {
   return FG_OK;
 }
 
+static fg_status read_averaged_row(fg_context *ctx, fg_scan *scan, void *out) {
+  for (int r = 0; r < scan->average.rows; r++) {
+    FG_TRY(read_one_row(ctx, scan, scan->fine));
+    fg_average_add(&scan->average, scan->fine);
+  }
+  fg_average_put(&scan->average, out);
+  return FG_OK;
+}
+
+static int64_t rows_left(const fg_scan *scan) {
+  return scan->info.height_px - scan->rows_read / scan->info.averaged[1];
+}
+
+/* Reads and checks what is less than a row of averages. */
+static fg_status read_remainder(fg_context *ctx, fg_scan *scan) {
+  while (scan->rows_read < (int64_t)scan->header.height_px)
+    FG_TRY(read_one_row(ctx, scan, scan->fine));
+  return FG_OK;
+}
+
 static fg_status read_gray_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                                 int64_t stride_bytes) {
-  for (int64_t i = 0; i < rows; i++)
-    FG_TRY(read_one_row(ctx, scan, (char *)out + i * stride_bytes));
-  bool complete = scan->rows_read == scan->info.height_px;
-  return complete && !scan->ended ? finish_scan(ctx, scan) : FG_OK;
+  for (int64_t i = 0; i < rows; i++) {
+    char *row = (char *)out + i * stride_bytes;
+    FG_TRY(scan->fine ? read_averaged_row(ctx, scan, row) : read_one_row(ctx, scan, row));
+  }
+  if (rows_left(scan) || scan->ended) return FG_OK;
+  FG_TRY(read_remainder(ctx, scan));
+  return finish_scan(ctx, scan);
 }
 
 fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                             int64_t stride_bytes) {
   const char *name = scan->source.name;
   if (scan->broken) return fg_fail(ctx, FG_ERR_USAGE, "%s: was read on after an error", name);
-  if (rows < 0 || rows > scan->info.height_px - scan->rows_read)
+  if (rows < 0 || rows > rows_left(scan))
     return fg_fail(ctx, FG_ERR_USAGE, "%s: %" PRId64 " rows wanted where %" PRId64 " are left",
-                   name, rows, scan->info.height_px - scan->rows_read);
+                   name, rows, rows_left(scan));
   if (rows > 1 && stride_bytes < (int64_t)count_row_bytes(scan))
     return fg_fail(ctx, FG_ERR_USAGE, "%s: rows of %zu bytes do not fit a stride of %" PRId64, name,
                    count_row_bytes(scan), stride_bytes);
@@ -251,18 +302,27 @@ fg_status fg_scan_begin_colours(fg_context *ctx, fg_scan *scan) {
     return fg_fail(ctx, FG_ERR_USAGE, "%s: its colours cannot be read apart", scan->source.name);
   const fg_scan_options options = {
       .allow_lossy = true, .pixel_cap = UINT64_MAX, .unsummed = true, .threads = scan->threads};
-  for (int i = 0; i < 3; i++)
+  for (int i = 0; i < 3; i++) {
     fg_gray_init(&scan->header, (fg_channel)(FG_CHANNEL_RED + i), &scan->colours[i]);
+    FG_TRY(open_average(ctx, scan, &scan->averages[i]));
+  }
   scan->source.unsummed = true; /* it is known, or not requested */
   scan->broken = true;          /* its gray rows are over */
   return begin_again(ctx, &options, scan);
 }
 
 fg_status fg_scan_read_colours(fg_context *ctx, fg_scan *scan, void *const planes[3]) {
-  size_t width = (size_t)scan->info.width_px;
-  FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
-  for (int i = 0; i < 3; i++)
-    scan->colours[i].convert(&scan->colours[i], scan->samples, width, planes[i]);
+  size_t width = (size_t)scan->header.width_px;
+  for (int r = 0; r < scan->info.averaged[1]; r++) {
+    FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
+    for (int i = 0; i < 3; i++) {
+      void *row = scan->fine ? scan->fine : planes[i];
+      scan->colours[i].convert(&scan->colours[i], scan->samples, width, row);
+      if (scan->fine) fg_average_add(&scan->averages[i], row);
+    }
+  }
+  for (int i = 0; scan->fine && i < 3; i++)
+    fg_average_put(&scan->averages[i], planes[i]);
   return FG_OK;
 }
 
@@ -300,6 +360,10 @@ void fg_scan_close(fg_scan *scan) {
   if (!scan) return;
   if (scan->format) scan->format->close(scan->reader);
   fg_source_close(&scan->source);
+  fg_average_close(&scan->average);
+  for (int i = 0; i < 3; i++)
+    fg_average_close(&scan->averages[i]);
+  free(scan->fine);
   free(scan->samples);
   free(scan);
 }

@@ -29,11 +29,21 @@ said() {
 }
 
 render plain 2400
-render tall '[2400,1200]'
+render tall '[2400,1800]'
+render double '[2400,1200]'
 said '' '' "$folder/plain.png"
 said '' '' "$folder/plain.png" --dpi 2405
 said resolution_contradicts_file 'measured at 2300 dpi as was given, but the file says 2400' "$folder/plain.png" --dpi 2300
-said unequal_resolution 'the resolutions along x and y differ: 2400 × 1200 dpi' "$folder/tall.png"
+said unequal_resolution 'the resolutions along x and y differ: 2400 × 1800 dpi' "$folder/tall.png"
 said resolution_contradicts_file 'measured at 2400 dpi as was given' "$folder/tall.png" --dpi 2400
+
+# A resolution that is a multiple of the other: pixels are averaged, no flag, and the page's picture is that of the pixels.
+note='it has 2400 × 1200 dpi: each 2 columns were averaged to one, so that pixels are square'
+"$program" measure "$folder/double.png" -o "$folder/a.json" --html "$folder/a.html" >/dev/null 2>"$folder/stderr" || fail "2400 × 1200 dpi"
+grep -q "$note" "$folder/stderr" || fail "no '$note' on standard error"
+grep -q "\"note\": \"$note" "$folder/a.json" || fail "no '$note' in the JSON"
+grep -q 'unequal_resolution\|contradicts_file' "$folder/a.json" && fail "2400 × 1200 dpi: a flag too many"
+grep -q '1200 × 1200 dpi (the file says 2' "$folder/a.html" || fail "the page does not say what the file states"
+grep -q 'data:image' "$folder/a.html" || fail "no picture on the page"
 
 exit $failed

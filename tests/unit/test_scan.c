@@ -10,6 +10,9 @@
 #include "png_fixture.h"
 #include "support/test.h"
 
+/* Pixels per metre. */
+#define PHYS_1200_DPI 47244
+
 static const picture plain = {.width = 61,
                               .height = 23,
                               .bit_depth = 8,
@@ -95,6 +98,85 @@ static void round_trip(const picture *p, uint32_t seed) {
   free(rows);
   free(file.data);
   free(samples);
+}
+
+/* Of `columns` × `rows` samples from (x, y) on. */
+static double expected_mean(const picture *p, const uint16_t *samples, size_t x, size_t y,
+                            const int averaged[2]) {
+  double sum = 0;
+  for (size_t r = 0; r < (size_t)averaged[1]; r++)
+    for (size_t c = 0; c < (size_t)averaged[0]; c++) {
+      size_t at = (y * (size_t)averaged[1] + r) * p->width + x * (size_t)averaged[0] + c;
+      sum += round(expected_gray(p, samples + at * (size_t)picture_channels(p)));
+    }
+  return sum / (averaged[0] * averaged[1]);
+}
+
+/* Reads a picture whose file states unequal resolutions, and its green channel apart. */
+static void check_averages(const picture *p, const int averaged[2]) {
+  uint16_t *samples = make_samples(p, 5);
+  bytes file = write_png(p, samples);
+  char *path = save_bytes(file.data, file.size);
+  fg_scan *scan = NULL;
+  const fg_scan_options options = {.channel = FG_CHANNEL_LUMINANCE};
+  assert_ok(&test_context, fg_scan_open(&test_context, path, &options, &scan));
+  const fg_scan_info *info = fg_scan_get_info(scan);
+  assert_int_equal(info->width_px, p->width / (size_t)averaged[0]);
+  assert_int_equal(info->height_px, p->height / (size_t)averaged[1]);
+  assert_int_equal(info->averaged[0], averaged[0]);
+  assert_int_equal(info->averaged[1], averaged[1]);
+  assert_near(info->dpi[0], info->dpi[1], 1e-9);
+  assert_non_null(strstr(info->warning, "averaged"));
+  size_t width = (size_t)info->width_px;
+  uint16_t *row = malloc(width * 2), *red = malloc(width * 2), *blue = malloc(width * 2);
+  for (size_t y = 0; y < (size_t)info->height_px; y++) {
+    assert_ok(&test_context, fg_scan_read_rows(&test_context, scan, 1, row, 2 * (int64_t)width));
+    for (size_t x = 0; x < width; x++) {
+      double value = p->bit_depth == 16 ? row[x] : ((uint8_t *)row)[x];
+      assert_near(value, expected_mean(p, samples, x, y, averaged),
+                  p->bit_depth == 16 ? 2.5 : 1.01);
+    }
+  }
+  char hex[65];
+  assert_ok(&test_context, fg_scan_sha256(&test_context, scan, hex));
+  if (fg_scan_has_colours(scan)) {
+    assert_ok(&test_context, fg_scan_begin_colours(&test_context, scan));
+    for (size_t y = 0; y < (size_t)info->height_px; y++) {
+      assert_ok(&test_context,
+                fg_scan_read_colours(&test_context, scan, (void *[]){red, row, blue}));
+      double sum = 0;
+      for (int r = 0; r < averaged[1]; r++)
+        for (int c = 0; c < averaged[0]; c++)
+          sum += samples[3 * ((y * (size_t)averaged[1] + (size_t)r) * p->width + (size_t)c) + 1];
+      double value = p->bit_depth == 16 ? row[0] : ((uint8_t *)row)[0];
+      assert_near(value, sum / (averaged[0] * averaged[1]), 0.51);
+    }
+  }
+  fg_scan_close(scan);
+  unlink(path);
+  free(path);
+  free(row);
+  free(red);
+  free(blue);
+  free(file.data);
+  free(samples);
+}
+
+/* What is less than a pixel at the right and below is left out, but read. */
+static void pixels_of_unequal_sides_are_averaged(void **state) {
+  static const int ratios[][2] = {{2, 1}, {1, 2}, {3, 1}, {1, 4}};
+  static const int types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_RGB};
+  (void)state;
+  for (size_t i = 0; i < 4 * sizeof ratios / sizeof ratios[0]; i++) {
+    in_row("ratios[%zu]", i);
+    const int *averaged = ratios[i / 4];
+    picture p = plain;
+    p.colour_type = types[i % 2];
+    p.bit_depth = i / 2 % 2 ? 16 : 8;
+    p.phys[0] = PHYS_1200_DPI * (uint32_t)averaged[0];
+    p.phys[1] = PHYS_1200_DPI * (uint32_t)averaged[1];
+    check_averages(&p, averaged);
+  }
 }
 
 static picture make_kind(size_t kind, uint32_t seed) {
@@ -202,7 +284,8 @@ static const struct {
   const char *says;
 } resolutions[] = {
     {{188976, 188976}, 1, 0, FG_OK, {4800, 4800}, NULL},
-    {{188976, 94488}, 1, 0, FG_OK, {4800, 2400}, NULL},
+    {{188976, 94488}, 1, 0, FG_OK, {2400, 2400}, NULL},
+    {{188976, 141732}, 1, 0, FG_OK, {4800, 3600}, NULL},
     {{47244, 47244}, 1, 0, FG_OK, {1200, 1200}, NULL},
     {{189000, 188950}, 1, 0, FG_OK, {4800.6, 4799.33}, NULL},
     {{188976, 188976}, 1, 1200.5, FG_OK, {1200.5, 1200.5}, NULL},
@@ -322,6 +405,7 @@ int main(void) {
       cmocka_unit_test(small_interlaced_images_are_whole),
       cmocka_unit_test(many_small_pieces_are_joined),
       cmocka_unit_test(equal_colours_keep_their_value),
+      cmocka_unit_test(pixels_of_unequal_sides_are_averaged),
       cmocka_unit_test(resolution_comes_from_file_or_caller),
       cmocka_unit_test(zero_dpi_from_a_user_is_wrong),
       cmocka_unit_test(pipe_is_read_hashed_and_drained),
