@@ -76,7 +76,7 @@ static void average_finer(fg_scan_info *info) {
   int ratio = whole_ratio(info->dpi[finer], info->dpi[1 - finer]);
   if (ratio == 1) return;
   fg_scan_warn(info->warning, sizeof info->warning,
-               "it has %.6g × %.6g dpi: each %d %s were averaged to one, so that pixels are square",
+               "it has %.6g × %.6g dpi: every %d %s were averaged to one, so that pixels are square",
                info->dpi[0], info->dpi[1], ratio, finer ? "rows" : "columns");
   info->averaged[finer] = ratio;
   info->dpi[finer] /= ratio;

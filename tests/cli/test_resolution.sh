@@ -38,7 +38,7 @@ said unequal_resolution 'the resolutions along x and y differ: 2400 × 1800 dpi'
 said resolution_contradicts_file 'measured at 2400 dpi as was given' "$folder/tall.png" --dpi 2400
 
 # A resolution that is a multiple of the other: pixels are averaged, no flag, and the page's picture is that of the pixels.
-note='it has 2400 × 1200 dpi: each 2 columns were averaged to one, so that pixels are square'
+note='it has 2400 × 1200 dpi: every 2 columns were averaged to one, so that pixels are square'
 "$program" measure "$folder/double.png" -o "$folder/a.json" --html "$folder/a.html" >/dev/null 2>"$folder/stderr" || fail "2400 × 1200 dpi"
 grep -q "$note" "$folder/stderr" || fail "no '$note' on standard error"
 grep -q "\"note\": \"$note" "$folder/a.json" || fail "no '$note' in the JSON"
