@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "foilgauge/foil_kind.h"
 #include "geometry/disc_fit.h"
 #include "geometry/mark_nodes.h"
@@ -103,6 +104,27 @@ static fg_status measure_disc(fg_context *ctx, const fg_disc *disc, const fg_mea
   return fg_disc_measure_again(ctx, again);
 }
 
+/* Discs of a measurement, each by a thread. */
+typedef struct disc_task {
+  const fg_measurement *from;
+  const fg_measure_mover *mover;
+  fg_measurement *to;
+} disc_task;
+
+static fg_status measure_one_disc(fg_context *ctx, void *shared, size_t d) {
+  const disc_task *task = shared;
+  return measure_disc(ctx, &task->from->discs[d], task->mover, &task->to->discs[d]);
+}
+
+static fg_status measure_discs_again(fg_context *ctx, const fg_measurement *m,
+                                     const fg_measure_mover *mover, unsigned threads,
+                                     fg_measurement *again) {
+  disc_task task = {m, mover, again};
+  FG_TRY(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&again->discs));
+  again->disc_count = m->disc_count;
+  return fg_parallel_run(ctx, threads, m->disc_count, measure_one_disc, &task);
+}
+
 /* A mark moves by the mean over its edges, along both axes of its lattice. */
 static fg_point moved_mark(const fg_grid *grid, const fg_mark *mark,
                            const fg_measure_mover *mover) {
@@ -159,11 +181,7 @@ fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_me
     FG_TRY_EXIT(measure_foil(ctx, &m->foils[f], &m->design, mover, threads, &again->foils[f]));
     again->foil_count++;
   }
-  FG_TRY_EXIT(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&again->discs));
-  for (size_t d = 0; d < m->disc_count; d++) {
-    again->disc_count++;
-    FG_TRY_EXIT(measure_disc(ctx, &m->discs[d], mover, &again->discs[d]));
-  }
+  FG_TRY_EXIT(measure_discs_again(ctx, m, mover, threads, again));
   FG_TRY_EXIT(measure_grid_again(ctx, m, mover, again));
 exit:
   if (status != FG_OK) fg_measurement_free(again);

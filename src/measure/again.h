@@ -5,7 +5,8 @@
 
 #include "foilgauge/foil.h"
 
-/* Functions that move the edges of a copy; `foil` or `disc` is its original. */
+/* Functions that move the edges of a copy; `foil` or `disc` is its original. Several threads call
+ * them. */
 typedef struct fg_measure_mover {
   void (*strip)(const void *user, const fg_foil *foil, fg_strip *strip);
   fg_point (*point)(const void *user, const fg_disc *disc, fg_point at); /* of a disc */
