@@ -47,6 +47,26 @@ void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_sca
   model->u_temperature_k = known ? calibration->u_temperature_k : NAN;
 }
 
+static bool holds_all_of_part(const fg_effect_set *set, const fg_effect_set *of) {
+  for (size_t i = 0; i < of->count; i++) {
+    bool held = !of->effects[i].kind->midline;
+    for (size_t k = 0; !held && k < set->count; k++)
+      held = set->effects[k].kind == of->effects[i].kind;
+    if (!held) return false;
+  }
+  return true;
+}
+
+/* Returns true where tied explanations share what they take for the part's. Whether a foil or the
+ * scanner does it is no matter of probabilities: such a tie keeps its whole range. */
+static bool has_probabilities(const fg_scan_loop *loop) {
+  bool shared = loop->by_evidence;
+  for (size_t k = 0; !loop->edge_fit.discs && k < loop->tie_count; k++)
+    shared = shared && holds_all_of_part(&loop->set, &loop->tie[k]) &&
+             holds_all_of_part(&loop->tie[k], &loop->set);
+  return shared;
+}
+
 /* Takes the explanations tied with that of the model, with their probabilities where evidence gives
  * them. */
 static void take_ties(const fg_scan_loop *loop, fg_scanner_model *made) {
@@ -58,7 +78,7 @@ static void take_ties(const fg_scan_loop *loop, fg_scanner_model *made) {
     sum += made->weight[made->others];
   }
   made->tied = made->others > 0;
-  if (!loop->by_evidence) return;
+  if (!has_probabilities(loop)) return;
   made->weights = made->others + 1;
   for (size_t k = 0; k < made->weights; k++)
     made->weight[k] /= sum;

@@ -158,6 +158,32 @@ static void an_effect_is_told_by_its_half_range_over_the_plane(void **state) {
   free_loop(loop);
 }
 
+static bool writes_weights(fg_scan_loop *loop) {
+  decide(loop);
+  char *text = write_text(loop);
+  bool has = strstr(text, "\"weights\"") != NULL;
+  free(text);
+  return has;
+}
+
+/* Whether a foil or the scanner does it keeps its range; among causes of the scanner alone the
+ * likelier one counts more. */
+static void a_tie_of_part_and_scanner_has_no_probabilities(void **state) {
+  fg_scan_loop *loop = make_loop();
+  (void)state;
+  loop->by_evidence = true;
+  assert_true(writes_weights(loop));
+  add_effect(&loop->tie[0], "part.ovality", 0, 9, 4);
+  assert_false(writes_weights(loop));
+  add_effect(&loop->set, "part.ovality", 0, 9, 4);
+  assert_true(writes_weights(loop));
+  loop->tie[0].count--;
+  assert_false(writes_weights(loop));
+  loop->edge_fit.discs = true;
+  assert_true(writes_weights(loop));
+  free_loop(loop);
+}
+
 /* A model that its own reader would refuse is not written. */
 static void unreadable_scanner_models_are_not_written(void **state) {
   fg_context ctx = {0};
@@ -274,6 +300,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_written_scanner_model_reads_back_equal),
       cmocka_unit_test(an_effect_is_told_by_its_half_range_over_the_plane),
+      cmocka_unit_test(a_tie_of_part_and_scanner_has_no_probabilities),
       cmocka_unit_test(unreadable_scanner_models_are_not_written),
       cmocka_unit_test(impossible_scanner_models_are_refused),
       cmocka_unit_test(possible_scanner_models_are_accepted),
