@@ -77,41 +77,46 @@ static void add_mean(const fg_evidence_search *s, const fg_evidence_model *model
   }
 }
 
-size_t fg_evidence_list_window(const fg_evidence_search *s, bool decided,
-                               const fg_evidence_model *list[FG_EVIDENCE_WINDOW],
-                               double weight[FG_EVIDENCE_WINDOW]) {
-  double per_nat = decided ? 1 : log(1 / WEIGHT_AT_MARGIN) / FG_EVIDENCE_LEAD, total = 0;
-  size_t count = 0;
-  for (size_t m = 0; m < s->count && count < FG_EVIDENCE_WINDOW; m++) {
-    const fg_evidence_model *model = &s->models[m];
-    double below = per_nat * (s->models[0].score - model->score);
-    bool more = false;
-    if (below > log(1 / WEIGHT_MIN)) break; /* sorted */
-    for (size_t k = 0; k < count && !more; k++)
-      more = fg_evidence_includes(model, list[k]);
-    if (more) continue;
-    list[count] = model;
-    total += weight[count++] = exp(-below);
-  }
-  for (size_t m = 0; m < count; m++)
-    weight[m] /= total;
-  return count;
+static bool includes_listed(const fg_evidence_model *model, const fg_evidence_window *w) {
+  for (size_t k = 0; k < w->count; k++)
+    if (fg_evidence_includes(model, w->model[k])) return true;
+  return false;
 }
 
-fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *s, bool decided,
-                                        fg_displacement *d, fg_displacement_part *parts) {
+fg_status fg_evidence_list_window(fg_context *ctx, fg_evidence_search *s,
+                                  const fg_evidence_model *found, fg_evidence_window *w) {
+  double per_nat = found ? 1 : log(1 / WEIGHT_AT_MARGIN) / FG_EVIDENCE_LEAD, total = 0;
+  w->count = 0;
+  for (size_t m = 0; m < s->count && w->count < FG_EVIDENCE_WINDOW; m++) {
+    const fg_evidence_model *model = &s->models[m];
+    double below = w->count ? per_nat * (w->model[0]->score - model->score) : 0;
+    bool bears;
+    if (below > log(1 / WEIGHT_MIN)) break; /* sorted */
+    if (includes_listed(model, w) || (found && !fg_evidence_includes(model, found))) continue;
+    FG_TRY(fg_evidence_leads_bear_names(ctx, s, model, &bears));
+    if (!bears) continue;
+    w->model[w->count] = model;
+    total += w->weight[w->count++] = exp(-below);
+  }
+  for (size_t m = 0; m < w->count; m++)
+    w->weight[m] /= total;
+  return FG_OK;
+}
+
+fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *s,
+                                        const fg_evidence_model *found, fg_displacement *d,
+                                        fg_displacement_part *parts) {
   fg_evidence_shift shift;
-  const fg_evidence_model *model[FG_EVIDENCE_WINDOW];
-  double weight[FG_EVIDENCE_WINDOW];
+  fg_evidence_window w;
   fg_status status = FG_OK;
-  size_t models = fg_evidence_list_window(s, decided, model, weight);
+  FG_TRY(fg_evidence_list_window(ctx, s, found, &w));
   *d = (fg_displacement){.frame = s->problem.edge_fit->frame};
   FG_TRY(fg_evidence_shift_open(ctx, s, &shift));
-  for (size_t m = 0; m < models && status == FG_OK; m++) {
+  for (size_t m = 0; m < w.count && status == FG_OK; m++) {
     fg_evidence_posterior posterior;
-    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, model[m], &posterior));
-    add_mean(s, model[m], &posterior, weight[m], d);
-    status = fg_evidence_shift_add_posterior(ctx, s, model[m], &posterior, weight[m], &shift);
+    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, w.model[m], &posterior));
+    add_mean(s, w.model[m], &posterior, w.weight[m], d);
+    status = fg_evidence_shift_add_posterior(ctx, s, w.model[m], &posterior, w.weight[m], &shift);
     fg_evidence_posterior_close(&posterior);
   }
   fg_evidence_shift_spread(s->problem.edge_fit, &shift, NULL, parts);

@@ -24,12 +24,18 @@ typedef struct fg_displacement {
   size_t rivals;
 } fg_displacement;
 
-/* Occam's window (Madigan and Raftery 1994): lists the models that are not far less likely than the
- * best and include none that is likelier, with their weights, sum 1. `decided` as below. */
+/* Occam's window (Madigan and Raftery 1994): models that are not far less likely than the best and
+ * include none that is likelier, with their weights, sum 1. */
 enum { FG_EVIDENCE_WINDOW = 48 };
-size_t fg_evidence_list_window(const fg_evidence_search *search, bool decided,
-                               const fg_evidence_model *list[FG_EVIDENCE_WINDOW],
-                               double weight[FG_EVIDENCE_WINDOW]);
+typedef struct fg_evidence_window {
+  const fg_evidence_model *model[FG_EVIDENCE_WINDOW];
+  double weight[FG_EVIDENCE_WINDOW];
+  size_t count;
+} fg_evidence_window;
+
+/* `found` as below. */
+fg_status fg_evidence_list_window(fg_context *ctx, fg_evidence_search *search,
+                                  const fg_evidence_model *found, fg_evidence_window *window);
 
 /* Returns the effect whose columns a part has on the glass: of a polynomial the powers of its axis.
  */
@@ -39,9 +45,10 @@ const fg_effect *fg_evidence_glass_effect(const fg_evidence_part *part);
 fg_point fg_displacement_at(const fg_displacement *displacement, fg_point at);
 
 /* Fills the displacement and, per part of the edge fit, its covariance; `parts` are allocated.
- * `decided`: the verdict is one set of causes. Else the models that it does not tell apart have
- * weight, too. */
-fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *search, bool decided,
+ * `found`: the one set of causes of the verdict, which all models that have weight hold then. NULL:
+ * the models that it does not tell apart have weight. */
+fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *search,
+                                        const fg_evidence_model *found,
                                         fg_displacement *displacement, fg_displacement_part *parts);
 
 #endif

@@ -27,21 +27,21 @@ static bool has_no_map(const fg_evidence_model *model) {
   return false;
 }
 
-/* Keeps the models that have a map; returns 0 where one of the others has weight. */
-static size_t keep_mapped(const fg_evidence_model **model, double *weight, size_t count) {
+/* Keeps the models that have a map; none where one of the others has weight. */
+static void keep_mapped(fg_evidence_window *w) {
   size_t kept = 0;
   double without = 0;
-  for (size_t m = 0; m < count; m++) {
-    if (has_no_map(model[m])) {
-      without += weight[m];
+  for (size_t m = 0; m < w->count; m++) {
+    if (has_no_map(w->model[m])) {
+      without += w->weight[m];
       continue;
     }
-    model[kept] = model[m];
-    weight[kept++] = weight[m];
+    w->model[kept] = w->model[m];
+    w->weight[kept++] = w->weight[m];
   }
   for (size_t m = 0; m < kept; m++)
-    weight[m] /= 1 - without;
-  return without > WEIGHT_WITHOUT ? 0 : kept;
+    w->weight[m] /= 1 - without;
+  w->count = without > WEIGHT_WITHOUT ? 0 : kept;
 }
 
 /* ---- splines ---- */
@@ -205,9 +205,8 @@ static fg_status find_moves(fg_context *ctx, const covariance_work *work, gsl_ma
   return FG_OK;
 }
 
-static fg_status find_modes(fg_context *ctx, fg_evidence_search *s,
-                            const fg_evidence_model *const *model, const double *weight,
-                            size_t models, const fg_map_fit *fit, fg_field_map *map) {
+static fg_status find_modes(fg_context *ctx, fg_evidence_search *s, const fg_evidence_window *w,
+                            const fg_map_fit *fit, fg_field_map *map) {
   size_t numbers = 2 * fg_map_splines(&fit->frame);
   covariance_work work = {.search = s, .fit = fit, .numbers = numbers};
   gsl_matrix *moves = gsl_matrix_calloc(2 * fit->places, numbers);
@@ -218,10 +217,10 @@ static fg_status find_modes(fg_context *ctx, fg_evidence_search *s,
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu splines", numbers);
     goto exit;
   }
-  for (size_t m = 0; m < models && status == FG_OK; m++) {
+  for (size_t m = 0; m < w->count && status == FG_OK; m++) {
     fg_evidence_posterior posterior;
-    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, model[m], &posterior));
-    status = add_moments(ctx, model[m], &posterior, weight[m], &work);
+    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, w->model[m], &posterior));
+    status = add_moments(ctx, w->model[m], &posterior, w->weight[m], &work);
     fg_evidence_posterior_close(&posterior);
   }
   for (size_t k = 0; k < numbers; k++)
@@ -237,16 +236,15 @@ exit:
 
 fg_status fg_evidence_find_map(fg_context *ctx, fg_evidence_search *s, const fg_displacement *about,
                                fg_field_map *map) {
-  const fg_evidence_model *model[FG_EVIDENCE_WINDOW];
-  double weight[FG_EVIDENCE_WINDOW];
+  fg_evidence_window w;
   fg_map_fit fit = {.places = 0};
   *map = (fg_field_map){.mm = NULL};
-  size_t models = fg_evidence_list_window(s, false, model, weight);
-  models = keep_mapped(model, weight, models);
-  if (!models) return FG_OK;
+  FG_TRY(fg_evidence_list_window(ctx, s, NULL, &w));
+  keep_mapped(&w);
+  if (!w.count) return FG_OK;
   FG_TRY(choose_splines(ctx, about, &fit, map));
   if (!map->mm) return FG_OK;
-  fg_status status = find_modes(ctx, s, model, weight, models, &fit, map);
+  fg_status status = find_modes(ctx, s, &w, &fit, map);
   fg_map_fit_close(&fit);
   if (status != FG_OK) fg_field_map_free(map);
   return status == FG_ERR_NUMERIC ? FG_OK : status;

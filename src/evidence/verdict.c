@@ -78,6 +78,36 @@ static bool lowest_leads(fg_evidence_problem *p, const fg_evidence_part *part, c
   return lead >= LOWEST_SHARE * (lead + rest);
 }
 
+/* The numbers of a part: the first of `mean`, of `covariance` with rows of n. */
+static bool lead_bears_name(const fg_effect *effect, const double *mean, const double *covariance) {
+  if (!effect->extends || effect->numbers != FG_EFFECT_LED) return true;
+  return fabs(mean[0]) >= LEADING_SIGMAS * sqrt(covariance[0]);
+}
+
+static bool holds_led(const fg_evidence_model *model) {
+  for (size_t k = 0; k < model->parts; k++) {
+    const fg_effect *effect = model->part[k]->effect;
+    if (effect && effect->extends && effect->numbers == FG_EFFECT_LED) return true;
+  }
+  return false;
+}
+
+fg_status fg_evidence_leads_bear_names(fg_context *ctx, fg_evidence_search *s,
+                                       const fg_evidence_model *model, bool *bear) {
+  fg_evidence_posterior posterior;
+  *bear = true;
+  if (!holds_led(model)) return FG_OK;
+  FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
+  for (size_t k = 0; k < model->parts; k++) {
+    size_t at = fg_evidence_first_of(s, model, k), n = posterior.count;
+    if (model->part[k]->effect)
+      *bear = *bear && lead_bears_name(model->part[k]->effect, posterior.mean + at,
+                                       posterior.covariance + at * n + at);
+  }
+  fg_evidence_posterior_close(&posterior);
+  return FG_OK;
+}
+
 static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model *model,
                              double middle_mm[FG_EVIDENCE_PARTS], bool *bears) {
   fg_evidence_posterior posterior;
@@ -93,8 +123,7 @@ static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_ev
       *bears = *bears && polynomial_bears_name(s, part, mean, covariance, n, &middle_mm[k]);
     if (part->effect->polynomial == FG_EFFECT_CUBIC && !holds_scale(model))
       *bears = *bears && is_cubic_alone(mean, covariance, n, margin_of(s, LEAD_SHARE));
-    if (part->effect->extends && part->effect->numbers == FG_EFFECT_LED)
-      *bears = *bears && fabs(mean[0]) >= LEADING_SIGMAS * sqrt(covariance[0]);
+    *bears = *bears && lead_bears_name(part->effect, mean, covariance);
     if (part->effect->bends) *bears = *bears && lowest_leads(&s->problem, part, mean);
   }
   fg_evidence_posterior_close(&posterior);

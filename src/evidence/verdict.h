@@ -32,6 +32,11 @@ typedef struct fg_evidence_verdict {
 /* Returns true when a model holds all causes of another. */
 bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other);
 
+/* `bear`: false where an effect that extends another has 0 for the number of its name. It stands
+ * for what no effect is then: a keystone whose middle is far away, for a scale along x. */
+fg_status fg_evidence_leads_bear_names(fg_context *ctx, fg_evidence_search *search,
+                                       const fg_evidence_model *model, bool *bear);
+
 /* `far`: the columns were taken so far from where the edges lie that they err; named effects are
  * preferred, about which they can be taken anew. */
 fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search, bool far,

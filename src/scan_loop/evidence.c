@@ -253,11 +253,12 @@ static fg_status find_map(fg_context *ctx, fg_scan_loop *loop, fg_evidence_searc
 }
 
 static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
-                                   bool decided) {
+                                   const fg_evidence_verdict *v) {
+  const fg_evidence_model *found = v->outcome == FG_EVIDENCE_FOUND ? &v->tie[0] : NULL;
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->displacement_parts));
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->unseen_parts));
   if (!loop->edge_fit.discs) FG_TRY(fg_evidence_find_unseen(ctx, search, loop->unseen_parts));
-  return fg_evidence_find_displacement(ctx, search, decided, &loop->displacement,
+  return fg_evidence_find_displacement(ctx, search, found, &loop->displacement,
                                        loop->displacement_parts);
 }
 
@@ -403,7 +404,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   loop->edge_error_um = search.problem.error_um;
   loop->margin = verdict.margin;
   loop->beside_foil_field = fg_scan_loop_is_beside_foil_field(&loop->edge_fit, &verdict);
-  FG_TRY_EXIT(find_displacement(ctx, loop, &search, verdict.outcome == FG_EVIDENCE_FOUND));
+  FG_TRY_EXIT(find_displacement(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_what_fits(ctx, loop, &search, &verdict, moved));
   FG_TRY_EXIT(find_map(ctx, loop, &search, &verdict));
