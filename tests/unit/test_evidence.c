@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "evidence/displacement.h"
 #include "evidence/options.h"
 #include "evidence/search.h"
 #include "evidence/unnamed.h"
@@ -324,6 +325,63 @@ static void three_named_causes_at_once_are_tied(void **state) {
   }
 }
 
+/* What was found is corrected: a likelier model without it, which the verdict has refused, has no
+ * weight. */
+static void what_was_found_is_in_every_model_of_weight(void **state) {
+  fg_context ctx = {0};
+  foil_rows f;
+  fg_evidence_search s;
+  fg_evidence_window w;
+  static fg_evidence_part part[24];
+  (void)state;
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, NOISE_UM);
+  const fg_evidence_request request = {.prior = {1, 1}};
+  assert_ok(&ctx,
+            fg_evidence_search_open(&ctx, &f.edge_fit, &request, f.residual_um, f.jacobian, &s));
+  memset(part, 0, sizeof part);
+  put_model(&s, part, 1e3, "scan.carriage_quadratic scan.row_step");
+  put_model(&s, part, 990, "scan.scale_y scan.shear scan.row_step");
+  put_model(&s, part, 989, "scan.scale_y scan.shear");
+  assert_ok(&ctx, fg_evidence_list_window(&ctx, &s, NULL, &w));
+  assert_ptr_equal(w.model[0], &s.models[0]);
+  assert_ok(&ctx, fg_evidence_list_window(&ctx, &s, &s.models[2], &w));
+  assert_int_equal(w.count, 2);
+  assert_ptr_equal(w.model[0], &s.models[1]);
+  assert_near(w.weight[0], 1 / (1 + exp(-1)), 1e-12);
+  fg_evidence_search_close(&s);
+  foil_rows_close(&f);
+}
+
+/* Without its size a keystone is a shear with a scale along x, which is no effect of the list. */
+static void a_keystone_of_no_size_has_no_weight(void **state) {
+  fg_context ctx = {0};
+  foil_rows f;
+  fg_evidence_search s;
+  fg_evidence_window w;
+  size_t nothings = 0;
+  (void)state;
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, NOISE_UM);
+  fg_edge_fit_find_frame(&f.edge_fit);
+  assert_true(foil_rows_add_effect(&f, fg_effect_find("scan.shear"), NULL, (double[]){18}, 1) == 1);
+  search(&f, &(fg_evidence_prior){1, 1}, &s);
+  for (size_t m = 0; m < s.count; m++) {
+    bool bear;
+    assert_ok(&ctx, fg_evidence_leads_bear_names(&ctx, &s, &s.models[m], &bear));
+    nothings += !bear;
+  }
+  assert_true(nothings > 0);
+  assert_ok(&ctx, fg_evidence_list_window(&ctx, &s, NULL, &w));
+  for (size_t m = 0; m < w.count; m++) {
+    bool bear;
+    assert_ok(&ctx, fg_evidence_leads_bear_names(&ctx, &s, w.model[m], &bear));
+    assert_true(bear);
+  }
+  fg_evidence_search_close(&s);
+  foil_rows_close(&f);
+}
+
 /* Standard uncertainty of R0, um, that is left by what the scanner may do unseen. */
 static double unseen_um(foil_rows *f) {
   fg_context ctx = {0};
@@ -367,6 +425,8 @@ int main(void) {
       cmocka_unit_test(one_step_is_told_before_two),
       cmocka_unit_test(a_small_cause_is_told_beside_a_large_one),
       cmocka_unit_test(three_named_causes_at_once_are_tied),
+      cmocka_unit_test(what_was_found_is_in_every_model_of_weight),
+      cmocka_unit_test(a_keystone_of_no_size_has_no_weight),
       cmocka_unit_test(what_edges_do_not_show_is_bounded_by_them),
       cmocka_unit_test(a_shape_that_must_be_just_so_costs_more_than_a_start),
   };
