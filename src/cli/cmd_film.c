@@ -297,9 +297,9 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     take_film_shard(run, fg_cli_shard(state, text));
     return 0;
   case OPTION_TOP:
-    if (strcmp(text, "stiff") != 0 && strcmp(text, "sagging") != 0)
-      argp_error(state, "--top-foil: '%s' is neither stiff nor sagging", text);
-    run->options.top = strcmp(text, "stiff") != 0 ? FG_FILM_SAGGING : FG_FILM_STIFF;
+    run->options.top = fg_cli_is_second(state, "top-foil", text, "stiff", "sagging")
+                           ? FG_FILM_SAGGING
+                           : FG_FILM_STIFF;
     return 0;
   case OPTION_SPEEDS:
     read_speeds(run, state, text);

@@ -56,6 +56,13 @@ double fg_cli_positive(struct argp_state *state, const char *name, const char *t
   return value;
 }
 
+bool fg_cli_is_second(struct argp_state *state, const char *name, const char *text,
+                      const char *first, const char *second) {
+  if (strcmp(text, first) != 0 && strcmp(text, second) != 0)
+    argp_error(state, "--%s: '%s' is neither %s nor %s", name, text, first, second);
+  return !strcmp(text, second);
+}
+
 uint64_t fg_cli_seed(struct argp_state *state, const char *text) {
   char *end;
   uint64_t seed = strtoull(text, &end, 10);

@@ -76,6 +76,10 @@ double fg_cli_number(struct argp_state *state, const char *name, const char *tex
  * program (64). */
 double fg_cli_positive(struct argp_state *state, const char *name, const char *text);
 
+/* True for the second of two words; another text ends the program (64). */
+bool fg_cli_is_second(struct argp_state *state, const char *name, const char *text,
+                      const char *first, const char *second);
+
 /* Returns the number of --seed, a whole one; anything else ends the program (64). */
 uint64_t fg_cli_seed(struct argp_state *state, const char *text);
 
