@@ -382,7 +382,7 @@ typedef struct fg_disc {
 typedef struct fg_measurement {
   char scan[1024]; /* path as given */
   char sha256[65];
-  char date[11];         /* of the file's last change, UTC, "2026-11-20"; "": not known */
+  char date[11];         /* local, of the file's last change, "2026-11-20"; "": not known */
   char model_sha256[65]; /* of the scanner's model that corrected it; "": none */
   const struct fg_scanner_model *model; /* the model; not owned; NULL: none */
   int64_t width_px, height_px;

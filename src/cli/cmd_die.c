@@ -47,7 +47,7 @@ enum {
 
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Of the profiles that follow:", 1},
-    {"half", OPTION_HALF, "HALF", 0, "concave (its bumps are grooves) or convex (ridges)", 1},
+    {"half", OPTION_HALF, "HALF", 0, "concave: its bumps are grooves; convex: ridges", 1},
     {"unit", OPTION_UNIT, "UNIT", 0, "mm, um or nm; of x and z each: mm,um", 1},
     {"columns", OPTION_COLUMNS, "X,Z", 0, "Which columns are x and z, from 1", 1},
     {"tip-um", OPTION_TIP, "R", 0,
@@ -55,7 +55,7 @@ static const struct argp_option options[] = {
     {"first-bump", OPTION_FIRST_BUMP, "N", 0,
      "Lowest number of the bumps whose crown is seen (default: 1)", 1},
     {"reversed", OPTION_REVERSED, NULL, 0, "The bumps' numbers run against x", 1},
-    {"forward", OPTION_FORWARD, NULL, 0, "They run with x (the default)", 1},
+    {"forward", OPTION_FORWARD, NULL, 0, "The bumps' numbers run with x (the default)", 1},
     {NULL, 0, NULL, 0, "Of all:", 2},
     {"design", 'd', "FILE", 0, "What the foil should be (default: the Gen II foil)", 2},
     {"list", OPTION_LIST, "FILE.csv", 0,
@@ -92,8 +92,10 @@ static const char doc[] =
     "Tolerances of the design that name radius_mm, radius_error_pct, bump_angle_deg, "
     "bump_angle_error_pct, centre_to_centre_mm, height_mm, intersection_angle_deg, place_error_deg "
     "or overall.radius_mm judge every bump of each half.\n\n"
-    "  foilgauge die --tip-um 2 --unit mm concave_*.txt convex_*.txt --html die.html\n"
-    "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
+    "  foilgauge die --tip-um 2 --unit mm concave_*.txt convex_*.txt \\\n"
+    "    --html die.html\n"
+    "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt \\\n"
+    "    --half convex b1.txt\n\n"
     "@exit_judged@";
 
 static void keep_status(die_run *run, fg_status status) {

@@ -58,7 +58,7 @@ static const struct argp_option options[] = {
      1},
     {"common", OPTION_COMMON, NULL, 0, "One radius and angle for all bumps", 2},
     {"step-um", OPTION_STEP, "UM", 0, "Smallest step of radii that the shop can cut", 2},
-    {"min-radius-mm", OPTION_MIN_RADIUS, "MM", 0, "Smallest bump radius that it can cut", 2},
+    {"min-radius-mm", OPTION_MIN_RADIUS, "MM", 0, "Smallest bump radius that the shop can cut", 2},
     {"max-move-pct", OPTION_MAX_MOVE, "PCT", 0,
      "Largest step from the present die (default: @max_move_pct@)", 2},
     {"foils", OPTION_FOILS, "N", 0, "Foils of the next lot (default: as many as in the last)", 2},
@@ -66,10 +66,10 @@ static const struct argp_option options[] = {
      "Choose the heat treatment together with the die: runs of an experiment, as `foilgauge doe` "
      "reads them",
      2},
-    {"doe-model", OPTION_DOE_MODEL, "FORMULA", 0, "Their model (default: temperature_C*duration_h)",
-     2},
+    {"doe-model", OPTION_DOE_MODEL, "FORMULA", 0,
+     "Of --doe: the model (default: temperature_C*duration_h)", 2},
     {"response", OPTION_RESPONSE, "COLUMN", 0,
-     "Their springback error in percent (default: springback_error_pct)", 2},
+     "Of --doe: the springback error in percent (default: springback_error_pct)", 2},
     {"setting", OPTION_SETTING, "SETTING", 0,
      "Heat treatment of the lots: 'temperature_C=650, duration_h=5'", 2},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
@@ -80,7 +80,7 @@ static const struct argp_option options[] = {
     {"trace-concave", OPTION_CONCAVE, "FILE.txt", 0,
      "The trace that a stylus should see of the concave half; `foilgauge die` reads it", 3},
     {"trace-convex", OPTION_CONVEX, "FILE.txt", 0, "The same of the convex half", 3},
-    {"tip-um", OPTION_TIP, "R", 0, "Radius of that stylus (default: 2)", 3},
+    {"tip-um", OPTION_TIP, "R", 0, "Radius of the tip that would trace it (default: 2)", 3},
     {0},
 };
 
@@ -94,9 +94,11 @@ static const char doc[] =
     "springback changes with the radius) is in U. The report says what the next lot will show: "
     "means with intervals, the share within the target's tolerances, bearings that assemble; "
     "`foilgauge lot --expected` holds the lot against it.\n\n"
-    "  foilgauge die --target my_foil.json --lot lot_a --die die_a.json -o next.json\n"
+    "  foilgauge die --target my_foil.json --lot lot_a --die die_a.json \\\n"
+    "    -o next.json\n"
     "  foilgauge lot scans_b -o lot_b --expected next.json\n"
-    "  foilgauge die --target my_foil.json --prior lot_b/expected.json --html next.html\n\n"
+    "  foilgauge die --target my_foil.json --prior lot_b/expected.json \\\n"
+    "    --html next.html\n\n"
     "@exit_done@";
 
 static void add_next_lot(next_run *run, const char *folder, struct argp_state *state) {

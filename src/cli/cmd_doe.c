@@ -104,7 +104,7 @@ static const struct argp_option options[] = {
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 1},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 1},
-    {"goal", OPTION_GOAL, "GOAL", 0, "lowest (default), highest, or the number to aim at", 2},
+    {"goal", OPTION_GOAL, "GOAL", 0, "lowest (default), highest, or a number to aim at", 2},
     {"constraint", OPTION_CONSTRAINT, "LIMIT", 0,
      "Keep the best setting within: 'temperature_C <= 700', '2*a + b >= 3'; may be repeated", 2},
     {"at", OPTION_AT, "SETTING", 0,

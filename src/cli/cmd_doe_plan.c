@@ -80,7 +80,8 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Plan an experiment: write its run sheet, in random order.\v"
     "Name the scans of each run in the empty column, then:\n"
-    "  foilgauge doe RUNS.csv --scans scan --response overall.springback_error_pct --model ...\n\n"
+    "  foilgauge doe RUNS.csv --scans scan --response overall.springback_error_pct \\\n"
+    "    --model ...\n\n"
     "What a fraction cannot tell apart is said on standard error.\n\n"
     "@exit_done@";
 

@@ -126,7 +126,8 @@ static const struct argp_option options[] = {
      "Speed at which this rotor lifted off, or touched down as it coasted, under this load: by how "
      "much the clearances differ from the bearing's, for the model to do so",
      3},
-    {"u-lift-off", OPTION_U_LIFT_OFF, "RPM", 0, "Its standard uncertainty (default: 0)", 3},
+    {"u-lift-off", OPTION_U_LIFT_OFF, "RPM", 0, "Standard uncertainty of --lift-off (default: 0)",
+     3},
     {"u-load", OPTION_U_LOAD, "N", 0,
      "Standard uncertainty of the load, for the clearances by the lift-off speed (default: 0)", 3},
     {"shims", OPTION_SHIMS, "LOW:HIGH", 0,
@@ -167,7 +168,8 @@ static const char doc[] =
     "about the steady place gives stiffness and damping (thesis section 5.12).\n\n"
     "  foilgauge film --load 5 --speed 60000 --clearance 80 --html film.html\n"
     "  foilgauge film --load 5 --speed 60000 --foils bearing.json -o film.json\n"
-    "  foilgauge film --load 5 --speed 60000 --clearance 80 --shims=-7:7 --draws 1000\n\n"
+    "  foilgauge film --load 5 --speed 60000 --clearance 80 --shims=-7:7 \\\n"
+    "    --draws 1000\n\n"
     "@exit_partly@";
 
 /* Two or three numbers by a mark; returns how many. */
@@ -295,9 +297,9 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     take_film_shard(run, fg_cli_shard(state, text));
     return 0;
   case OPTION_TOP:
-    if (strcmp(text, "stiff") != 0 && strcmp(text, "sagging") != 0)
-      argp_error(state, "--top-foil: '%s' is neither stiff nor sagging", text);
-    run->options.top = strcmp(text, "stiff") != 0 ? FG_FILM_SAGGING : FG_FILM_STIFF;
+    run->options.top = fg_cli_is_second(state, "top-foil", text, "stiff", "sagging")
+                           ? FG_FILM_SAGGING
+                           : FG_FILM_STIFF;
     return 0;
   case OPTION_SPEEDS:
     read_speeds(run, state, text);

@@ -66,7 +66,8 @@ static const struct argp_option options[] = {
      1},
     {"time", OPTION_TIME, "H", 0, "For so many hours", 1},
     {"schedule", OPTION_SCHEDULE, "FILE.csv", 0,
-     "In place of both: columns time_h, temperature_C; straight lines between", 1},
+     "In place of --temperature and --time: columns time_h, temperature_C; straight lines between",
+     1},
     {"pressure", OPTION_PRESSURE, "BAR", 0,
      "Accepted beside the other settings of a run; enters no equation (see below)", 1},
     {NULL, 0, NULL, 0, "Constants from an experiment:", 2},
@@ -147,14 +148,6 @@ static void check_end(const forming_run *run, struct argp_state *state) {
     argp_error(state, "--response, --of and --free belong to --fit RUNS.csv");
 }
 
-/* Words with few choices: the place of the text among them. */
-static int choose_word(struct argp_state *state, const char *option, const char *text,
-                       const char *first, const char *second) {
-  if (strcmp(text, first) != 0 && strcmp(text, second) != 0)
-    argp_error(state, "--%s: '%s' is neither %s nor %s", option, text, first, second);
-  return !strcmp(text, second);
-}
-
 static const fg_cli_value values[] = {
     FG_CLI_VALUE(OPTION_DIE, forming_run, die_path),
     FG_CLI_VALUE(OPTION_MATERIAL, forming_run, material_path),
@@ -182,12 +175,12 @@ static error_t parse_forming_option(int key, char *text, struct argp_state *stat
   switch (key) {
   case OPTION_SHAPE:
     run->options.shape =
-        choose_word(state, "shape", text, "arcs", "sine") ? FG_FORMING_SINE : FG_FORMING_ARCS;
+        fg_cli_is_second(state, "shape", text, "arcs", "sine") ? FG_FORMING_SINE : FG_FORMING_ARCS;
     return 0;
   case OPTION_OF:
     run->of_given = true;
-    run->of =
-        choose_word(state, "of", text, "strip", "foil") ? FG_FORMING_OF_FOIL : FG_FORMING_OF_STRIP;
+    run->of = fg_cli_is_second(state, "of", text, "strip", "foil") ? FG_FORMING_OF_FOIL
+                                                                   : FG_FORMING_OF_STRIP;
     return 0;
   case OPTION_FREE:
     parse_free(state, run, text);

@@ -83,7 +83,8 @@ static const struct argp_option options[] = {
     {"without", OPTION_WITHOUT, "COLUMN", 0, "Leave this column out (may be repeated)", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans of --doe; overrules the files", 0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
-    {"threads", OPTION_THREADS, "N", 0, "Threads that measure them (default: one per core)", 0},
+    {"threads", OPTION_THREADS, "N", 0,
+     "Threads that measure the scans of --doe (default: one per core)", 0},
     {"model", OPTION_MODEL, "FORMULA", 0,
      "The declared model: a formula ('1 + T + D + T:D + T^2'; --lot: @lot_model@), or arc_length "
      "(from the "
@@ -119,7 +120,7 @@ static const struct argp_option options[] = {
     {"minutes", OPTION_MINUTES, "N", 0,
      "Refuse a table whose search may take longer by estimate (default: @loop_minutes@)", 0},
     {"memory", OPTION_MEMORY, "MIB", 0,
-     "Refuse one that may take more memory (default: @loop_mebibytes@)", 0},
+     "Refuse a table whose search may take more memory (default: @loop_mebibytes@)", 0},
     {"seed", OPTION_SEED, "N", 0,
      "Of the interval of the error ratio and of the smallest amplitudes; no verdict depends on it "
      "(default: @seed@)",
@@ -146,29 +147,16 @@ static const char doc[] =
     "elsewhere.\n\n"
     "@exit_loop@";
 
-static void parse_loop_number(struct argp_state *state, const char *name, const char *text,
-                              double *value) {
-  char *end;
-  *value = strtod(text, &end);
-  if (*end || end == text || !(*value > 0)) argp_error(state, "--%s %s: above 0", name, text);
-}
-
 /* COLUMN=P; the text, which argp owns, is cut at its last equals sign. */
 static void parse_period(struct argp_state *state, char *text, fg_loop_table_spec *spec) {
   char *equals = strrchr(text, '=');
   if (!equals || equals == text) argp_error(state, "--period %s: COLUMN=P, x_mm=2", text);
   if (spec->periods == FG_LOOP_PERIODS) argp_error(state, "too many --period");
   fg_loop_known_period *known = &spec->period[spec->periods++];
-  parse_loop_number(state, "period", equals + 1, &known->period);
+  known->period = fg_cli_positive(state, "period", equals + 1);
   if (!isfinite(known->period)) argp_error(state, "--period %s: a finite period", text);
   *equals = '\0';
   known->column = text;
-}
-
-static void parse_seed(struct argp_state *state, const char *text, uint64_t *seed) {
-  char *end;
-  *seed = strtoull(text, &end, 10);
-  if (*end || end == text || *text == '-') argp_error(state, "--seed %s: a whole number", text);
 }
 
 static void parse_expected(struct argp_state *state, const char *text, bool *expected) {
@@ -218,22 +206,22 @@ static error_t parse_loop_table_option(int key, char *text, struct argp_state *s
   if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case OPTION_MATTERS:
-    parse_loop_number(state, "matters", text, &arguments->matters);
+    arguments->matters = fg_cli_positive(state, "matters", text);
     return 0;
   case OPTION_EXPECT:
     parse_expected(state, text, arguments->expected);
     return 0;
   case OPTION_MINUTES:
-    parse_loop_number(state, "minutes", text, &arguments->minutes);
+    arguments->minutes = fg_cli_positive(state, "minutes", text);
     return 0;
   case OPTION_MEMORY:
-    parse_loop_number(state, "memory", text, &arguments->mebibytes);
+    arguments->mebibytes = fg_cli_positive(state, "memory", text);
     return 0;
   case OPTION_PERIOD:
     parse_period(state, text, &arguments->spec);
     return 0;
   case OPTION_SEED:
-    parse_seed(state, text, &arguments->spec.seed);
+    arguments->spec.seed = fg_cli_seed(state, text);
     return 0;
   case OPTION_WITHOUT:
     if (arguments->source.withouts == FG_LOOP_WITHOUTS) argp_error(state, "too many --without");

@@ -87,15 +87,16 @@ static const struct argp_option options[] = {
      "one; BLUE: -RED, where it is not given. What the colour lines say of an effect of the "
      "carriage then has a size",
      0},
-    {"without", OPTION_WITHOUT, "EFFECT[,EFFECT...]", 0,
-     "Effects that are not looked for, by name: such as one that this scanner cannot have. What "
+    {"without", OPTION_WITHOUT, "EFFECTS", 0,
+     "Effects that are not looked for, by name and with commas between: such as one that this "
+     "scanner cannot have. What "
      "they would explain is then another's, or unattributed",
      0},
     {"hold-out", OPTION_HOLD_OUT, "SCAN", 0, "A scan that only confirms (may be repeated)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "The scanner's model, for `measure --model`", 0},
     {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},
-    {"scanner", OPTION_SCANNER, "NAME", 0, "Its name, kept in the model", 0},
+    {"scanner", OPTION_SCANNER, "NAME", 0, "The scanner's name, kept in the model", 0},
     {"seed", OPTION_SEED, "N", 0, "Of every random step (default: @seed@)", 0},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: all cores)", 0},
     {0},
@@ -126,14 +127,6 @@ static void add_scan(struct argp_state *state, const char *path, bool held_out) 
   a->hold_out[a->count] = held_out;
   a->held_out += held_out;
   a->paths[a->count++] = path;
-}
-
-static double parse_number(struct argp_state *state, const char *name, const char *text) {
-  char *end;
-  double value = strtod(text, &end);
-  if (*end || end == text || !(value > 0))
-    argp_error(state, "--%s %s: a number above 0", name, text);
-  return value;
 }
 
 /* Lines of a sensor lie some rows apart, to a few hundred. */
@@ -175,44 +168,15 @@ static const fg_cli_value values[] = {
     FG_CLI_VALUE(OPTION_FORMING_MODEL, arguments, forming_model),
     FG_CLI_VALUE(OPTION_ALLOW_LOSSY, arguments, options.allow_lossy),
     FG_CLI_VALUE(OPTION_SAME, arguments, options.same_foil),
+    FG_CLI_VALUE(OPTION_WITHOUT, arguments, options.without),
+    FG_CLI_NUMBER(OPTION_DPI, arguments, options.dpi, 1, 1e6),
+    FG_CLI_NUMBER(OPTION_THREADS, arguments, options.threads, 1, 1024),
     FG_CLI_VALUE(OPTION_SAME_PART, arguments, grid.same_part),
     FG_CLI_VALUE(OPTION_MODEL_OUT, arguments, outputs.path[FG_LOOP_MODEL]),
     FG_CLI_VALUE(OPTION_HTML, arguments, outputs.path[FG_LOOP_HTML]),
     FG_CLI_VALUE('o', arguments, outputs.path[FG_LOOP_JSON]),
     {0},
 };
-
-static error_t parse_grid_option(struct argp_state *state, int key, char *text) {
-  arguments *a = state->input;
-  switch (key) {
-  case OPTION_TURNED:
-    parse_turns(state, text, a->grid.turns);
-    return 0;
-  default:
-    return fg_cli_parse_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
-  }
-}
-
-/* Parses how the loop runs; returns false for another option. */
-static bool parse_run(int key, const char *text, struct argp_state *state,
-                      fg_scan_loop_options *run) {
-  switch (key) {
-  case OPTION_DPI:
-    run->dpi = parse_number(state, "dpi", text);
-    return true;
-  case OPTION_SEED:
-    run->seed = (uint64_t)parse_number(state, "seed", text);
-    return true;
-  case OPTION_THREADS:
-    run->threads = (unsigned)parse_number(state, "threads", text);
-    return true;
-  case OPTION_WITHOUT:
-    run->without = text;
-    return true;
-  default:
-    return false;
-  }
-}
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
@@ -226,6 +190,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       argp_error(state, "--scanner: a name of 1 to %d bytes", FG_SCANNER_NAME - 1);
     a->options.scanner = text;
     return 0;
+  case OPTION_SEED:
+    a->options.seed = fg_cli_seed(state, text);
+    return 0;
+  case OPTION_TURNED:
+    parse_turns(state, text, a->grid.turns);
+    return 0;
   case OPTION_COLOUR_GAP:
     parse_gaps(state, text, a->options.colour_gap_px);
     return 0;
@@ -237,7 +207,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
-    return parse_run(key, text, state, &a->options) ? 0 : parse_grid_option(state, key, text);
+    return fg_cli_parse_known(state, key, text, &a->known) ? 0 : ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -63,7 +63,8 @@ static const struct argp_option options[] = {
      "5.13)",
      2},
     {"u-displacement", OPTION_U_DISPLACEMENT, "PCT", 0,
-     "Of the scale of the displacement probe (default: @load_u_displacement_pct@ %, thesis section "
+     "Standard uncertainty of the displacement probe's scale (default: @load_u_displacement_pct@ "
+     "%, thesis section "
      "5.13)",
      2},
     {"diameter", OPTION_DIAMETER, "MM", 0,
@@ -91,7 +92,8 @@ static const struct argp_option options[] = {
     {"rig-torque", OPTION_RIG, "NMM", 0,
      "The rig's own friction torque, N mm; not given, it counts as preload and the report says so",
      3},
-    {"u-rig-torque", OPTION_U_RIG, "NMM", 0, "Its standard uncertainty (default: 0)", 3},
+    {"u-rig-torque", OPTION_U_RIG, "NMM", 0,
+     "Standard uncertainty of --rig-torque, N mm (default: 0)", 3},
     {"u-weight", OPTION_U_WEIGHT, "PCT", 0,
      "Standard uncertainty of the dead weights' scale (default: @load_u_weight_pct@ %)", 3},
     {NULL, 0, NULL, 0, "Output:", 4},
@@ -133,8 +135,10 @@ static const char doc[] =
     "slope (thesis section 6.2.2); without --break-away none is reported. A bearing column, or "
     "--bearing before --break-away, names the bearing; else it is the tests' only one.\n\n"
     "  foilgauge stiffness test.csv --threshold 5 --html stiffness.html\n"
-    "  foilgauge stiffness test.csv --break-away pulls.csv --rig-torque 4 --u-rig-torque 0.5\n"
-    "  foilgauge stiffness --bearing B1 b1.csv --bearing B2 b2.csv --lot lot1 --table-out t.csv\n"
+    "  foilgauge stiffness test.csv --break-away pulls.csv --rig-torque 4 \\\n"
+    "    --u-rig-torque 0.5\n"
+    "  foilgauge stiffness --bearing B1 b1.csv --bearing B2 b2.csv --lot lot1 \\\n"
+    "    --table-out t.csv\n"
     "  foilgauge loop --table t.csv --response difference_um --model 1\n\n"
     "@exit_judged@";
 

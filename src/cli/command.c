@@ -48,6 +48,28 @@ double fg_cli_number(struct argp_state *state, const char *name, const char *tex
   return value;
 }
 
+double fg_cli_positive(struct argp_state *state, const char *name, const char *text) {
+  char *end;
+  double value = strtod(text, &end);
+  if (*end || end == text || !(value > 0))
+    argp_error(state, "--%s %s: a number above 0", name, text);
+  return value;
+}
+
+bool fg_cli_is_second(struct argp_state *state, const char *name, const char *text,
+                      const char *first, const char *second) {
+  if (strcmp(text, first) != 0 && strcmp(text, second) != 0)
+    argp_error(state, "--%s: '%s' is neither %s nor %s", name, text, first, second);
+  return !strcmp(text, second);
+}
+
+uint64_t fg_cli_seed(struct argp_state *state, const char *text) {
+  char *end;
+  uint64_t seed = strtoull(text, &end, 10);
+  if (*end || end == text || *text == '-') argp_error(state, "--seed %s: a whole number", text);
+  return seed;
+}
+
 fg_lot_shard fg_cli_shard(struct argp_state *state, const char *text) {
   static const char digits[] = "0123456789";
   unsigned long long index = 0, count = 0;

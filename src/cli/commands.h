@@ -72,6 +72,17 @@ fg_status fg_cli_parse_in_order(fg_context *ctx, const struct argp *parser, int 
 double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,
                      double highest);
 
+/* Returns the number of an option that must be above 0; infinity is one. Anything else ends the
+ * program (64). */
+double fg_cli_positive(struct argp_state *state, const char *name, const char *text);
+
+/* True for the second of two words; another text ends the program (64). */
+bool fg_cli_is_second(struct argp_state *state, const char *name, const char *text,
+                      const char *first, const char *second);
+
+/* Returns the number of --seed, a whole one; anything else ends the program (64). */
+uint64_t fg_cli_seed(struct argp_state *state, const char *text);
+
 enum { FG_CLI_SHARDS_MAX = 1000000000 };
 /* Reads "I/N", a part of N parts, of --shard; ends the program where it is none. */
 fg_lot_shard fg_cli_shard(struct argp_state *state, const char *text);

@@ -31,8 +31,9 @@ enum { FG_CLI_TONE = 0x7002, FG_CLI_THICKNESS = 0x7003, FG_CLI_FLATBED = 0x7004 
    FG_CLI_TONE,                                                                                     \
    "TONE",                                                                                          \
    0,                                                                                               \
-   "linear: you vouch that the scanner's counts are proportional to the light; thickness and "      \
-   "diameters then hold no unknown tone curve (default: unknown)",                                  \
+   "linear: you vouch that the scanner's counts are proportional to the light; u of thickness "     \
+   "and "                                                                                           \
+   "of diameters then leaves out the tone curve (default: unknown)",                                \
    group},                                                                                          \
       FG_CLI_FLATBED_ROW(group), {                                                                  \
     "thickness-measured", FG_CLI_THICKNESS, "MM±U", 0,                                              \

@@ -59,7 +59,8 @@ typedef struct fg_cli_pages {
        FG_CLI_TOKEN,                                                                               \
        "TEXT",                                                                                     \
        0,                                                                                          \
-       "The same on the command line, where every user of the machine can read it",                \
+       "What --token-file holds, on the command line, where every user of the machine can read "   \
+       "it",                                                                                       \
        group},                                                                                     \
       {"users",                                                                                    \
        FG_CLI_USERS,                                                                               \

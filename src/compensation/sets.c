@@ -191,8 +191,8 @@ static void summarise_set(const fg_formed_foil *foil, size_t foils, const fg_die
 typedef struct formed_scan {
   const char *part; /* "": not named */
   const char *bearing;
-  int number;   /* in its scan */
-  double scans; /* scans of the same foil so far */
+  int number;           /* in its scan */
+  fg_formed_foil count; /* of the scans so far that show each value */
 } formed_scan;
 
 static const char *cell_or_empty(const fg_manifest *manifest, size_t item, const char *column) {
@@ -205,24 +205,25 @@ static formed_scan name_formed_scan(const fg_formed_lot *lot, size_t item, size_
   const fg_lot_settings *settings = &lot->lot.settings;
   return (formed_scan){.part = cell_or_empty(manifest, item, settings->part_column),
                        .bearing = cell_or_empty(manifest, item, settings->bearing_column),
-                       .number = lot->lot.records[item].foils[foil].number,
-                       .scans = 1};
+                       .number = lot->lot.records[item].foils[foil].number};
 }
 
-static void average(double *mean, double value, double scans) {
-  if (!isfinite(*mean)) *mean = value;
-  if (isfinite(value)) *mean += (value - *mean) / scans;
+/* Adds a value, if it is known, to the mean of `count` of them. */
+static void average(double *mean, double *count, double value) {
+  if (!isfinite(value)) return;
+  *mean = *count > 0 ? *mean + (value - *mean) / (*count + 1) : value;
+  ++*count;
 }
 
-/* Adds a further scan of a foil to the mean of its scans. A bump that one of them lacks counts as
- * the others show it. */
-static void average_scans(fg_formed_foil *mean, const fg_formed_foil *scan, double scans) {
-  average(&mean->overall, scan->overall, scans);
-  average(&mean->pitch, scan->pitch, scans);
+/* Adds a scan of a foil to the mean of its scans. A bump that one of them lacks counts as the
+ * others show it. */
+static void average_scans(fg_formed_foil *mean, fg_formed_foil *count, const fg_formed_foil *scan) {
+  average(&mean->overall, &count->overall, scan->overall);
+  average(&mean->pitch, &count->pitch, scan->pitch);
   for (size_t i = 0; i < FG_COMPENSATION_BUMPS; i++) {
-    average(&mean->height_mm[i], scan->height_mm[i], scans);
+    average(&mean->height_mm[i], &count->height_mm[i], scan->height_mm[i]);
     for (int k = 0; k < 2; k++)
-      average(&mean->log_ratio[k][i], scan->log_ratio[k][i], scans);
+      average(&mean->log_ratio[k][i], &count->log_ratio[k][i], scan->log_ratio[k][i]);
   }
 }
 
@@ -234,11 +235,13 @@ static fg_status add_formed_scan(fg_context *ctx, const fg_formed_foil *formed, 
   for (size_t k = *named.part ? sets->foils - first : 0; k-- > 0;)
     if (scan[k].number == named.number && !strcmp(scan[k].part, named.part) &&
         !strcmp(scan[k].bearing, named.bearing)) {
-      average_scans(&sets->foil[first + k], formed, ++scan[k].scans);
+      average_scans(&sets->foil[first + k], &scan[k].count, formed);
       return FG_OK;
     }
+  fg_formed_foil mean = *formed;
+  average_scans(&mean, &named.count, formed);
   scan[sets->foils - first] = named;
-  return append_formed_foil(ctx, sets, formed);
+  return append_formed_foil(ctx, sets, &mean);
 }
 
 static fg_status add_formed_foils(fg_context *ctx, const fg_formed_lot *lot, const char *name,

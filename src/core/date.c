@@ -2,7 +2,6 @@
 #include "core/date.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -50,6 +49,11 @@ double fg_date_days(const char *text) {
   return end && is_day(year, month, day) ? days_of(year, month, day) + read_time(text + end) : NAN;
 }
 
+bool fg_date_is_utc(const char *text) {
+  size_t length = strlen(text);
+  return length && text[length - 1] == 'Z';
+}
+
 /* The algorithm of days_of, inverted. */
 void fg_date_format(double days, char text[FG_DATE_TEXT]) {
   text[0] = '\0';
@@ -69,7 +73,8 @@ void fg_date_format(double days, char text[FG_DATE_TEXT]) {
 void fg_date_of_time(int64_t seconds, char day[FG_DATE_DAY]) {
   time_t time = (time_t)seconds;
   struct tm when;
-  if (!gmtime_r(&time, &when) || strftime(day, FG_DATE_DAY, "%Y-%m-%d", &when) != FG_DATE_DAY - 1)
+  if (!localtime_r(&time, &when) ||
+      strftime(day, FG_DATE_DAY, "%Y-%m-%d", &when) != FG_DATE_DAY - 1)
     day[0] = '\0';
 }
 

@@ -3,6 +3,7 @@
 #ifndef FG_CORE_DATE_H
 #define FG_CORE_DATE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Size of "2026-11-20T13:45" with its NUL, and room to spare. */
@@ -13,6 +14,9 @@ enum { FG_DATE_TEXT = 24 };
  * strokes is no date: it may begin with day or month. */
 double fg_date_days(const char *text);
 
+/* True with a Z: the date is UTC. Others are local, wherever that is. */
+bool fg_date_is_utc(const char *text);
+
 /* Writes days as ISO 8601: the day, and hours and minutes where the days are not whole; "" for NaN.
  */
 void fg_date_format(double days, char text[FG_DATE_TEXT]);
@@ -20,7 +24,7 @@ void fg_date_format(double days, char text[FG_DATE_TEXT]);
 /* Size of "2026-11-20" with its NUL. */
 enum { FG_DATE_DAY = 11 };
 
-/* Write the day of a time in seconds since 1970, UTC, and of a file's last change; "" where the
+/* Write the local day of a time in seconds since 1970, and of a file's last change; "" where the
  * file's time is not known. */
 void fg_date_of_time(int64_t seconds, char day[FG_DATE_DAY]);
 void fg_date_of_file(const char *path, char day[FG_DATE_DAY]);

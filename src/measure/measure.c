@@ -58,9 +58,18 @@ static fg_status fail_without_beams(fg_context *ctx, const fg_measurement *m) {
                  m->dpi[0]);
 }
 
-/* Explains an empty scan: the strip may be too thin for this resolution, or the resolution wrong.
- */
-static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
+/* Explains an empty scan: it may hold 12 bits in samples of 16, the strip may be too thin for this
+ * resolution, or the resolution wrong. */
+static fg_status fail_empty(fg_context *ctx, const fg_measurement *m, const fg_tiles *tiles) {
+  double brightest = 257.0 * tiles->brightest;
+  if (m->bit_depth == 16 && brightest < 4096)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: no foil in the picture (%zu speck%s or other objects); its brightest place "
+        "has %.0f of 65535: are they 12 bits in a file of 16? if so, multiply all values "
+        "by 16",
+        m->scan, m->specks, fg_plural(m->specks), brightest);
+
   if (fg_foil_traits_of(m->design.kind)->lies_flat) return fail_without_beams(ctx, m);
   double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
   if (width_px >= STRIP_MIN_PX)
@@ -86,7 +95,7 @@ static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_
   FG_TRY_EXIT(fg_session_create(ctx, m, options->threads, !options->without_plain, &v.session));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, visit_strip, &v, &budget, &tiles, m->sha256));
   FG_TRY_EXIT(fg_session_finish(ctx, v.session));
-  if (m->foil_count == 0) status = fail_empty(ctx, m);
+  if (m->foil_count == 0) status = fail_empty(ctx, m, &tiles);
 exit:
   fg_session_free(v.session);
   fg_tiles_free(&tiles);

@@ -10,7 +10,7 @@ enum { FG_CAUSES = 16, FG_CAUSE_POINTS = 256, FG_CAUSE_WORDS = 600 };
 /* By how much a level of a column, or a place on it, moves the quantity; the mean over all foils
  * of the search is 0. Between places the shift is linear, beyond them constant. */
 typedef struct fg_cause_point {
-  char level[FG_NAMED_TEXT];
+  char level[FG_IDENTITY_BYTES];
   double x, shift;
 } fg_cause_point;
 

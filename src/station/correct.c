@@ -29,19 +29,9 @@ const char *fg_identity_field(size_t field) {
   return fields[field].field;
 }
 
-/* Reads a text without the spaces around it, which readers and fingers add. */
 static fg_status read_identity_text(fg_context *ctx, const char *field, const char *given,
                                     char text[FG_IDENTITY_BYTES]) {
-  given += strspn(given, " ");
-  size_t length = strlen(given);
-  while (length && given[length - 1] == ' ')
-    length--;
-  if (length >= FG_IDENTITY_BYTES)
-    return fg_fail(ctx, FG_ERR_DATA, "The %s is too long: at most %d bytes.", field,
-                   FG_IDENTITY_BYTES - 1);
-  memcpy(text, given, length);
-  text[length] = '\0';
-  return FG_OK;
+  return fg_request_read_text(ctx, field, given, text, FG_IDENTITY_BYTES);
 }
 
 static bool is_given(const fg_request *request, const char *name) {

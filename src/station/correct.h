@@ -7,9 +7,7 @@
 #include "station/naming.h"
 #include "station/request.h"
 
-/* FG_IDENTITY_FIELDS: serial, lot, die, operator. FG_IDENTITY_BYTES: a file's name, and the number
- * of a foil of its bed. */
-enum { FG_IDENTITY_FIELDS = 4, FG_IDENTITY_BYTES = FG_NAMED_TEXT + 16 };
+enum { FG_IDENTITY_FIELDS = 4 }; /* serial, lot, die, operator */
 
 typedef struct fg_identity_change {
   int64_t foil;

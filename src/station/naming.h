@@ -7,7 +7,8 @@
 
 #include "foilgauge/status.h"
 
-enum { FG_NAMED_TEXT = 128 };
+/* FG_IDENTITY_BYTES: of a stored field, which may have the number of a foil of its bed. */
+enum { FG_NAMED_TEXT = 128, FG_IDENTITY_BYTES = FG_NAMED_TEXT + 16 };
 
 typedef struct fg_named {
   char serial[FG_NAMED_TEXT], lot[FG_NAMED_TEXT], die[FG_NAMED_TEXT], operator_name[FG_NAMED_TEXT];

@@ -232,7 +232,8 @@ fg_status fg_order_apply(fg_context *ctx, fg_inspection *station, const fg_order
   fg_status status = count_scans(ctx, database->writer, order->id, &count);
   pthread_mutex_unlock(&database->writing);
   FG_TRY(status);
-  fg_text_clip(named->serial, FG_NAMED_TEXT, "%.100s-%03lld", order->number, (long long)count + 1);
+  fg_text_clip(named->serial, FG_NAMED_TEXT, "%.*s-%03lld", FG_NAMED_TEXT - FG_ORDER_SCAN_BYTES,
+               order->number, (long long)count + 1);
   return FG_OK;
 }
 

@@ -6,6 +6,9 @@
 #include "station/naming.h"
 #include "station/state.h"
 
+/* FG_ORDER_SCAN_BYTES: of "-001", what a scan's serial number has behind its order's. */
+enum { FG_ORDER_SCAN_BYTES = 8 };
+
 typedef struct fg_order {
   int64_t id; /* 0: none */
   char number[FG_NAMED_TEXT], part[FG_NAMED_TEXT], lot[FG_NAMED_TEXT], die[FG_NAMED_TEXT],

@@ -156,18 +156,23 @@ fg_status fg_page_orders(fg_context *ctx, fg_inspection *station, sqlite3 *reade
 
 /* ---- actions ---- */
 
-static void take_field(char field[FG_NAMED_TEXT], const char *given) {
-  given += strspn(given, " ");
-  if (given[0]) fg_text_clip(field, FG_NAMED_TEXT, "%s", given);
+static fg_status read_field(fg_context *ctx, const char *what, const char *given,
+                            char field[FG_NAMED_TEXT]) {
+  char text[FG_NAMED_TEXT];
+  FG_TRY(fg_request_read_text(ctx, what, given, text, sizeof text));
+  if (text[0]) strcpy(field, text);
+  return FG_OK;
 }
 
 /* Fields of the html form win over those of a file. */
-static void take_fields(const fg_request *request, fg_order *order) {
+static fg_status read_fields(fg_context *ctx, const fg_request *request, fg_order *order) {
   char *const fields[] = {order->part, order->lot, order->die, order->coil, order->operator_name};
   for (size_t i = 0; i < ORDER_FIELDS; i++)
-    take_field(fields[i], fg_request_get(request, order_fields[i].name));
+    FG_TRY(read_field(ctx, order_fields[i].name, fg_request_get(request, order_fields[i].name),
+                      fields[i]));
   const char *pieces = fg_request_get(request, "pieces");
   if (pieces[0]) order->pieces = strtoll(pieces, NULL, 10);
+  return FG_OK;
 }
 
 /* The order opened last is in force. Where the clock was set back, that is not the latest time: an
@@ -213,12 +218,13 @@ static fg_status find_known_order(fg_context *ctx, fg_inspection *station, const
 fg_status fg_action_order(fg_context *ctx, fg_inspection *station, const fg_request *request,
                           fg_answer *answer) {
   fg_order order;
-  char number[FG_NAMED_TEXT] = "";
-  take_field(number, fg_request_get(request, "number"));
+  char number[FG_NAMED_TEXT - FG_ORDER_SCAN_BYTES];
+  FG_TRY(
+      fg_request_read_text(ctx, "order", fg_request_get(request, "number"), number, sizeof number));
   if (!number[0]) return fg_fail(ctx, FG_ERR_DATA, "The order has no number.");
   FG_TRY(find_known_order(ctx, station, number, &order));
   bool known = order.number[0] != '\0';
-  take_fields(request, &order);
+  FG_TRY(read_fields(ctx, request, &order));
   if (!known && !order.lot[0]) {
     ask_for_fields(number, answer);
     return FG_OK;

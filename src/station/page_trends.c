@@ -228,23 +228,24 @@ static void write_withheld_reasons(const page *p) {
             p->trend->count, fg_plural(p->trend->count), STABLE_MIN);
   else if (quantity->chance.outliers)
     fprintf(out,
-            "the chart is not stable: %zu %s farther out than chance explains (level 1 %%). Find "
+            "the chart is not stable: %zu %s farther out than chance explains (level %d %%). Find "
             "the cause, or choose a range without %s with limits of its own.",
             quantity->chance.outliers, quantity->chance.outliers == 1 ? "point lies" : "points lie",
-            quantity->chance.outliers == 1 ? "it" : "them");
+            FG_LOT_CHART_LEVEL_PCT, quantity->chance.outliers == 1 ? "it" : "them");
   else if (!quantity->chance.steady)
     fprintf(out,
-            "the chart is not stable (%zu %s with a signal; chance explains up to %zu, level 1 "
+            "the chart is not stable (%zu %s with a signal; chance explains up to %zu, level %d "
             "%%). What a process will do can be said "
             "when it is stable; find the causes of the signals first, or choose a range after the "
             "last of them with limits of its own.",
             quantity->chart.signals, quantity->chart.signals == 1 ? "point" : "points",
-            quantity->chance.max);
+            quantity->chance.max, FG_LOT_CHART_LEVEL_PCT);
   else if (!quantity->stable)
     fprintf(out,
             "the spread within foils is not stable: it leaves its limits at %zu %s, more or "
-            "farther than chance explains (level 1 %%).",
-            quantity->deviations.signals, quantity->deviations.signals == 1 ? "foil" : "foils");
+            "farther than chance explains (level %d %%).",
+            quantity->deviations.signals, quantity->deviations.signals == 1 ? "foil" : "foils",
+            FG_LOT_CHART_LEVEL_PCT);
   else
     fputs("the values do not differ.", out);
   fputs("</p>\n", out);
@@ -257,9 +258,9 @@ static void write_chance_signals(const page *p) {
   if (signals)
     fprintf(p->out,
             "<p class=\"note\">Stated although %zu %s a signal: chance explains up to %zu in %zu "
-            "foils (level 1 %%), and no point lies farther out than by chance.</p>\n",
+            "foils (level %d %%), and no point lies farther out than by chance.</p>\n",
             signals, signals == 1 ? "point has" : "points have", quantity->chance.max,
-            p->trend->count);
+            p->trend->count, FG_LOT_CHART_LEVEL_PCT);
 }
 
 static void write_capability(const page *p) {

@@ -83,6 +83,19 @@ bool fg_request_read_fields(fg_request *request, const char *text, size_t length
   return true;
 }
 
+fg_status fg_request_read_text(fg_context *ctx, const char *what, const char *given, char *text,
+                               size_t size) {
+  given += strspn(given, " ");
+  size_t length = strlen(given);
+  while (length && given[length - 1] == ' ')
+    length--;
+  if (length >= size)
+    return fg_fail(ctx, FG_ERR_DATA, "The %s is too long: at most %zu bytes.", what, size - 1);
+  memcpy(text, given, length);
+  text[length] = '\0';
+  return FG_OK;
+}
+
 const char *fg_request_get(const fg_request *request, const char *name) {
   for (size_t i = 0; i < request->fields; i++)
     if (!strcmp(request->field[i].name, name)) return request->field[i].value;

@@ -35,7 +35,7 @@ typedef struct fg_request {
 typedef struct fg_answer {
   int code;             /* of HTTP */
   const char *type;     /* "text/html; charset=utf-8" */
-  char location[256];   /* of a redirection; "": none */
+  char location[1200];  /* of a redirection, with two encoded names; "": none */
   char cookie[128];     /* to set; "": none */
   char download[160];   /* name of a file to save; "": to be shown */
   bool own_style;       /* a report of its own: its styles are inline */
@@ -55,6 +55,11 @@ bool fg_request_read_fields(fg_request *request, const char *text, size_t length
 
 /* The value, or "". */
 const char *fg_request_get(const fg_request *request, const char *name);
+
+/* Reads the value of `given` without the spaces around it, which readers and fingers add.
+ * FG_ERR_DATA, "The <what> is too long": `text` does not hold it. */
+fg_status fg_request_read_text(fg_context *ctx, const char *what, const char *given, char *text,
+                               size_t size);
 
 /* Writes a page into `out`; the writer alone uses `reader`, the database, meanwhile.
  * FG_ERR_USAGE: the requested item does not exist (404). */

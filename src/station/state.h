@@ -17,7 +17,7 @@ typedef struct fg_closing {
   pthread_mutex_t mutex;
   pthread_t thread;
   bool started, running; /* started: there is a thread to join */
-  char lot[1024], by[128];
+  char lot[1024], by[1024];
   char error[1024]; /* failure of the last that could not be closed; "": none */
 } fg_closing;
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "foilgauge/text.h"
 #include "page/page.h"
 #include "quantity/quantity_rows.h"
 #include "station/trend_choice.h"
@@ -81,8 +82,8 @@ fg_status fg_trend_choose(fg_context *ctx, const fg_inspection *station, const f
   else if (!find_row(name, choice))
     return fg_fail(ctx, FG_ERR_USAGE, "There is no quantity \"%.60s\".", name);
   if (choice->owner == FG_QUANTITY_OF_BUMP) choice->bump = (int)read_count(request, "bump");
-  snprintf(choice->lot, sizeof choice->lot, "%s", fg_request_get(request, "lot"));
-  snprintf(choice->die, sizeof choice->die, "%s", fg_request_get(request, "die"));
+  fg_text_clip(choice->lot, sizeof choice->lot, "%s", fg_request_get(request, "lot"));
+  fg_text_clip(choice->die, sizeof choice->die, "%s", fg_request_get(request, "die"));
   choice->by_lots = !strcmp(fg_request_get(request, "by"), "lots");
   choice->newest = !strcmp(newest, "all") ? 0 : newest[0] ? read_count(request, "newest") : NEWEST;
   choice->from = read_count(request, "from");

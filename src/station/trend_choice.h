@@ -13,7 +13,7 @@ typedef struct fg_trend_choice {
   fg_quantity_owner owner;
   const fg_quantity *row;
   int bump; /* 0: the mean over a foil's bumps, or the whole foil */
-  char lot[FG_NAMED_TEXT], die[FG_NAMED_TEXT]; /* "": any */
+  char lot[FG_IDENTITY_BYTES], die[FG_IDENTITY_BYTES]; /* "": any */
   bool by_lots;
   size_t newest;                /* points of the chart; 0: all */
   size_t from, to;              /* points that are drawn; 0: not given */

@@ -146,6 +146,7 @@ fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_ext
   FG_TRY_EXIT(note_limits(ctx, regression));
   FG_TRY_EXIT(fg_regression_coefficients(ctx, &fit, regression));
   FG_TRY_EXIT(fg_regression_aliases(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_empty_cells(ctx, model, regression));
   FG_TRY_EXIT(fg_regression_condition(ctx, &fit, regression));
   FG_TRY_EXIT(fg_regression_anova(ctx, &fit, regression));
   FG_TRY_EXIT(fg_regression_lack_of_fit(ctx, &fit, options, regression));

@@ -24,6 +24,9 @@ fg_status fg_regression_note(fg_context *ctx, fg_regression *regression, const c
 
 fg_status fg_regression_coefficients(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
 fg_status fg_regression_aliases(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+/* Notes the combinations of factors' levels without runs, where an interaction lacks numbers. */
+fg_status fg_regression_empty_cells(fg_context *ctx, const fg_model *model,
+                                    fg_regression *regression);
 fg_status fg_regression_condition(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
 fg_status fg_regression_anova(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
 fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit,

@@ -25,6 +25,8 @@ enum { COARSE_STEP = 3, COARSE_ROUNDS = 12, FINE_ROUNDS = 8, SAMPLES_MIN = 30 };
  * this many windows' radii. */
 #define END_BLURS   3.0
 #define ARM_LONGEST 2.0
+/* A pixel that is so far within a stroke's border has more than half of the contrast. */
+#define INSIDE_PX 1.0
 /* Lags at which the residual's correlation is summed. */
 enum { LAGS = 4 };
 
@@ -179,25 +181,31 @@ static fg_status fit_once(fg_context *ctx, const fg_tiles *tiles, fg_mark_kind k
   return FG_OK;
 }
 
-/* Length of a cross's arm in a direction, to where its end has half of the contrast. */
-static double find_arm_px(const fg_tiles *tiles, const fg_mark_fit *fit, double angle) {
+/* Length of a cross's arm in a direction, to where its end has half of the contrast, `offset_px`
+ * beside the arm's middle. */
+static double find_arm_px(const fg_tiles *tiles, const fg_mark_fit *fit, double angle,
+                          double offset_px) {
   double longest = ARM_LONGEST * fit->reach_px, half = 0.5 * fabs(fit->p[FG_MARK_CONTRAST]);
+  double x = fit->p[FG_MARK_X] - offset_px * sin(angle),
+         y = fit->p[FG_MARK_Y] + offset_px * cos(angle);
   for (double along = 0.5 * fit->reach_px; along < longest; along += 0.5) {
-    double value = fg_tiles_pixel(tiles, llround(fit->p[FG_MARK_X] + along * cos(angle)),
-                                  llround(fit->p[FG_MARK_Y] + along * sin(angle)));
+    double value =
+        fg_tiles_pixel(tiles, llround(x + along * cos(angle)), llround(y + along * sin(angle)));
     if (!(fabs(value - fit->p[FG_MARK_LEVEL]) > half)) return along;
   }
   return 0; /* no end: an arm that meets the next mark's */
 }
 
-/* The model's strokes have no ends: the window may reach as far as no blur of an end does. */
+/* The model's strokes have no ends: the window may reach as far as no blur of an end does. A round
+ * end begins at the stroke's borders. */
 static void widen_cross(const fg_tiles *tiles, fg_mark_fit *fit) {
-  double shortest = INFINITY;
+  double w = fit->p[FG_MARK_SHAPE + 2], shortest = INFINITY;
   for (int arm = 0; arm < 4; arm++) {
     double along = fit->p[FG_MARK_SHAPE + (arm & 1)] + M_PI_2 + (arm & 2 ? M_PI : 0);
-    shortest = fmin(shortest, find_arm_px(tiles, fit, along));
+    for (int side = -1; side <= 1; side++)
+      shortest = fmin(shortest, find_arm_px(tiles, fit, along, side * fmax(0, w - INSIDE_PX)));
   }
-  double w = fit->p[FG_MARK_SHAPE + 2], end = shortest - END_BLURS * fit->p[FG_MARK_BLUR];
+  double end = shortest - END_BLURS * fit->p[FG_MARK_BLUR];
   /* At the border of the stroke a circle about the cross lies nearer to the end. */
   fit->reach_px = fmax(fit->reach_px, sqrt(fmax(0, end * end - w * w)));
 }

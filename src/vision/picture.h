@@ -21,7 +21,7 @@ fg_status fg_picture_of_ring(fg_context *ctx, const fg_disc_work *work, const fg
 /* Counts of the pixels near edges. picture_levels.c */
 typedef struct fg_value_counts {
   size_t of[256], total; /* by 8-bit count */
-  int low_byte[256];     /* of the 16-bit values of each count; -1: none, -2: several */
+  uint64_t low[256][4];  /* by 8-bit count: a bit for each low byte of its 16-bit values */
 } fg_value_counts;
 
 void fg_value_counts_clear(fg_value_counts *counts);
@@ -31,8 +31,7 @@ static inline void fg_value_counts_add(fg_value_counts *counts, float value) {
   if (raw < 0 || high > 255) return;
   counts->of[high]++;
   counts->total++;
-  if (counts->low_byte[high] == -1) counts->low_byte[high] = low;
-  if (counts->low_byte[high] != low) counts->low_byte[high] = -2;
+  counts->low[high][low >> 6] |= (uint64_t)1 << (low & 63);
 }
 
 /* Gray levels in use, gaps between them, clipping at either end. `levels`: counts inside and

@@ -28,8 +28,6 @@ enum { PARTS = 6 };
 
 void fg_value_counts_clear(fg_value_counts *counts) {
   *counts = (fg_value_counts){.total = 0};
-  for (int i = 0; i < 256; i++)
-    counts->low_byte[i] = -1;
 }
 
 /* Returns the outermost count on one side, but for END_SHARE of the pixels. */
@@ -96,6 +94,14 @@ static void inspect_gaps(const fg_value_counts *counts, int low, int high,
     state->findings |= FG_PICTURE_LEVEL_GAPS;
 }
 
+/* Number of values of a count: up to 256 of a file of 16 bits, one of 8 bits. */
+static int values_of(const fg_value_counts *counts, int count) {
+  int values = 0;
+  for (int k = 0; k < 4; k++)
+    values += __builtin_popcountll(counts->low[count][k]);
+  return values;
+}
+
 /* Finds the mean distance of the levels in use between the two sides of the edge. */
 static void inspect_steps(const fg_value_counts *counts, const double levels[2],
                           fg_picture_state *state) {
@@ -104,7 +110,7 @@ static void inspect_steps(const fg_value_counts *counts, const double levels[2],
   int used = 0;
   for (int i = low + 1; i < high && i < 256; i++) {
     if (i < 0) continue;
-    used += counts->of[i] > 0;
+    used += values_of(counts, i);
   }
   double step = contrast / (used + 1);
   bool enough = counts->total > PIXELS_MIN || (used < LEVELS_FEW && counts->total > PIXELS_FEW);

@@ -166,6 +166,12 @@ static bool is_beyond_steps(const float *blocks, float range) {
   return small > STEPS / 2;
 }
 
+static float brightest_of(const float *blocks, float brightest) {
+  for (int i = 0; i < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; i++)
+    brightest = blocks[i] > brightest ? blocks[i] : brightest;
+  return brightest;
+}
+
 static bool has_contrast(const float *blocks) {
   float low = INFINITY, high = -INFINITY;
   for (int i = 0; i < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; i++) {
@@ -182,6 +188,7 @@ static void mark_wanted(fg_tiles *tiles, int32_t strip) {
   for (int32_t c = 0; c < tiles->columns; c++) {
     copy_blocks(tiles, c, strip, blocks);
     tiles->wanted[first + (size_t)c] = has_contrast(blocks);
+    tiles->brightest = brightest_of(blocks, tiles->brightest);
     tiles->medians[first + (size_t)c] = fg_select_of_few(blocks, sizeof blocks / sizeof *blocks,
                                                          sizeof blocks / sizeof *blocks / 2);
   }

@@ -46,6 +46,7 @@ typedef struct fg_tiles {
   fg_tile **tiles;                   /* columns × rows; NULL: background */
   float *medians;                    /* columns × rows: median of each tile's block means */
   uint8_t *wanted;                   /* columns × rows: contrast above the background's scatter */
+  float brightest;                   /* of all block means, in 8-bit counts */
   int32_t received;                  /* number of received strips */
   /* of the undecided strips: */
   uint8_t *strips[FG_TILE_STRIPS];     /* rows of width_px pixels */

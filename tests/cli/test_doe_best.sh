@@ -215,5 +215,11 @@ grep -q 'the settings of D follow those of the other factors in these runs (R² 
 printf 'die,oven,y\nA,x,1\nA,x,1.2\nA,z,3\nA,z,3.1\nB,x,2\nB,x,2.2\n' >cell.csv
 expect 0 '' "$program" doe cell.csv --response y --model 'die*oven' -o cell.json
 [ "$(value cell.json 'any("dieB:ovenz is 0 in every run: nothing is known of it" in n for n in r["notes"])')" = True ] || fail "an empty cell"
+[ "$(value cell.json 'any("no run has die B with oven z: 0 of 1 numbers of the interaction die:oven can be told" in n for n in r["notes"])')" = True ] || fail "an empty cell is not named"
+# Two of them, of which one is that of the first levels.
+printf 'die,oven,y\nA,y,2\nA,y,2.1\nA,z,3\nA,z,3.1\nB,x,2\nB,x,2.2\nB,y,5\nB,y,5.1\nB,z,4\nB,z,4.3\nC,x,1\nC,x,1.1\nC,z,2\nC,z,2.2\n' >cells.csv
+expect 0 '' "$program" doe cells.csv --response y --model 'die*oven' -o cells.json
+[ "$(value cells.json 'any("no run has die A with oven x, die C with oven y: 2 of 4 numbers of the interaction die:oven can be told." in n for n in r["notes"])')" = True ] ||
+  fail "two empty cells: $(value cells.json 'r["notes"]')"
 
 exit $failed

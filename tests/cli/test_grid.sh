@@ -261,4 +261,25 @@ for name in ('scan.chip_tilt', 'scan.chip_gap'):
     assert 0.08 < u < 1.1 and abs((place - 4 + pitch / 2) % pitch - pitch / 2) < 2.5 * u, fields[name]
 assert fields['scan.carriage_ripple']['u_shape'][0] == 0, fields['scan.carriage_ripple']
 " || fail "the model does not say how well the place of a seam is known"
+# The strokes of these crosses end round: a window that holds an end's corners made u 20 times what the places scatter by.
+echo '{"schema": "foilgauge/render/1", "seed": 2, "grids": [{"marks": "crosses", "centre_mm": [10, 10], "pitch_mm": 5, "columns": 3, "rows": 3, "mark_mm": 0.3,
+  "length_mm": 3}], "scanner": {"dpi": 2400}}' >crosses.json
+echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "crosses", "pitch_mm": 5}' >crosses_design.json
+"$renderer" render crosses.json -o crosses.png -t crosses_truth.json || fail "render crosses"
+expect 0 "" "$program" measure crosses.png --design crosses_design.json -o crosses_found.json
+python3 - <<'P' || fail "u of crosses with round ends"
+import json, math
+marks = json.load(open("crosses_found.json"))["grid"]["marks"]
+true = [[value * 25.4 / 2400 for value in mark["centre_px"]] for mark in json.load(open("crosses_truth.json"))["marks"]]
+errors = []
+for mark in marks:
+    place = (mark["x_mm"], mark["y_mm"])
+    near = min(true, key=lambda at: math.dist(at, place))
+    errors += [1000 * (a - b) for a, b in zip(place, near)]
+means = [sum(errors[axis::2]) / len(marks) for axis in (0, 1)]
+scatter = math.sqrt(sum((e - means[k % 2]) ** 2 for k, e in enumerate(errors)) / (len(errors) - 2))
+u = sum(mark["u_um"] for mark in marks) / len(marks)
+assert len(marks) == 9 and 0.5 < u / scatter < 2, (u, scatter)
+P
+
 exit $failed

@@ -106,6 +106,9 @@ sed 's/2400/1200/' a.json >half.json && "$renderer" render half.json -o half.png
 expect 65 "one resolution" loop a.png half.png
 expect 64 "given twice" loop a.png --hold-out a.png
 expect 64 "give a scan" loop
+expect 64 "a whole number" loop a.png --seed 1e3
+expect 64 "not a number from 1 to 1024" loop a.png --threads 0
+expect 64 "not a number from 1 to" loop a.png --dpi inf
 render third 8 -70 ''
 sed -i 's/3.34,3.41/4.24,3.41/' third.json && "$renderer" render third.json -o third.png || fail "render another foil"
 expect 65 "not the same foil" loop --same-foil a.png third.png

@@ -152,9 +152,20 @@ TZ=Europe/Berlin expect 0 '' lot zoned.csv -o zoned
 for line in 'K0004/1 04.02.2026/00:30:15' 'K0004/1 04.07.2026/10:00:59'; do
   grep -qF "$line" zoned/results.dfq || fail "results.dfq has no $line: $(grep K0004/1 zoned/results.dfq)"
 done
+# QIF keeps the Z, and the seconds; a date without a zone gets none.
+for start in 2026-02-03T23:30:15Z 2026-07-04T08:00:59Z; do
+  grep -qF "<InspectionStart>$start<" zoned/results.qif || fail "results.qif has no $start"
+done
+# Without a column the day of the scan's file counts, as the clock on the wall shows it.
+printf 'scan\nlate.png\n' >no_column.csv
+cp scans/foil1.png late.png
+touch -d 2026-02-03T23:30:00Z late.png
+TZ=Europe/Berlin expect 0 '' lot no_column.csv -o no_column
+grep -qF 'K0004/1 04.02.2026/00:00:00' no_column/results.dfq || fail "the day of a file is not local"
+grep -qF '<InspectionStart>2026-02-04T00:00:00<' no_column/results.qif || fail "results.qif: the day of a file is not local"
 TZ=Europe/Berlin expect 0 '' lot traced.csv -o traced_berlin
 grep -qF 'K0004/1 03.02.2026/14:05:00' traced_berlin/results.dfq || fail "a time without a zone was moved"
-for part in '<InspectionStart>2026-02-03T14:05:00Z</InspectionStart>' '<InspectionStart>2026-02-04T00:00:00Z<' \
+for part in '<InspectionStart>2026-02-03T14:05:00</InspectionStart>' '<InspectionStart>2026-02-04T00:00:00<' \
   '<Attributes n="7"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
   '<Attributes n="5"><AttributeStr name="die" value="B"/>' '<AttributeStr name="scan" value="scans/foil2.png"/>'; do
   grep -qF "$part" deep/er/traced/results.qif || fail "results.qif has no $part"

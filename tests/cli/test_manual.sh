@@ -38,6 +38,8 @@ for command in $commands; do
   grep -q '^.SH EXIT STATUS' "$work/page" || say "$command: no exit status"
   grep -q '^.SH EXAMPLES' "$work/page" || say "$command: no example"
   grep -q '^64$' "$work/page" || say "$command: no exit code 64"
+  # argp moves an option where the words before it end at the margin, and words to the left below a name that is too long.
+  grep -nE '^ +$|^ {30,}--|^ {6}--[^ ]{27,}$' "$work/help" >"$work/moved" && say "help $command: $(cat "$work/moved")"
   grep -q '@[a-z_]*@' "$work/page" "$work/help" && say "$command: something was not put in"
   "$fg" help | grep -qF "$(sed -n "/^foilgauge-$command - /s///p" "$work/page")" ||
     say "$command: the page says something else than help"

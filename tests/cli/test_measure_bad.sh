@@ -93,6 +93,50 @@ check 65 'no foil in the picture \([1-9]' "$folder/coin.png"
 render coarse "\"foils\":[$foil],\"scanner\":{\"dpi\":150}"
 check 65 'at 150 dpi a strip of 0.1 mm is 0.6 pixels wide; is .* wrong\? if not, scan at 600 dpi or more' "$folder/coarse.png"
 
+# 12 bits in a file of 16 are dark. They are not few levels; where no foil stands out, they are named. A dark picture of 8 bits gets no such words.
+python3 - "$good" "$folder" <<'PY' || fail "12 bits"
+import struct, sys, zlib
+data, at, packed = open(sys.argv[1], "rb").read(), 8, b""
+while at < len(data):
+    size, kind = struct.unpack(">I4s", data[at:at + 8])
+    body, at = data[at + 8:at + 8 + size], at + 12 + size
+    if kind == b"IHDR":
+        width, height, bits, colour, _, _, interlaced = struct.unpack(">IIBBBBB", body)
+        assert (bits, colour, interlaced) == (8, 0, 0)
+    packed += body if kind == b"IDAT" else b""
+raw, row, rows = zlib.decompress(packed), bytes(width), []
+def predict(kind, left, up, corner):
+    near = sorted((left, up, corner), key=lambda value: abs(left + up - corner - value))
+    return (0, left, up, (left + up) // 2, near[0])[kind]
+for y in range(height):
+    kind, line, left, corner = raw[y * (width + 1)], bytearray(raw[y * (width + 1) + 1:(y + 1) * (width + 1)]), 0, 0
+    if kind:
+        for x in range(width):
+            line[x] = (line[x] + predict(kind, left, row[x], corner)) & 255
+            left, corner = line[x], row[x]
+    row = bytes(line)
+    rows.append(row)
+for name, factor in ("dark", 16), ("bright", 256), ("darker", 4):
+    with open(f"{sys.argv[2]}/{name}.pgm", "wb") as out:
+        out.write(b"P5 %d %d 65535\n" % (width, height))
+        for row in rows:
+            out.write(struct.pack(">%dH" % width, *(value * factor for value in row)))
+PY
+check 0 '' "$folder/bright.pgm" --dpi 4800
+cp "$folder/last.json" "$folder/bright.json"
+check 0 '' "$folder/dark.pgm" --dpi 4800
+grep -q few_levels "$folder/last.json" "$folder/stderr" && fail "12 bits are called few levels"
+python3 - "$folder/bright.json" "$folder/last.json" <<'PY' || fail "12 bits: other radii"
+import json, sys
+bright, dark = ([bump["radius_mm"] for bump in json.load(open(path))["foils"][0]["bumps"]] for path in sys.argv[1:])
+assert len(bright) == len(dark) == 3 and all(abs(a - b) < 1e-4 for a, b in zip(bright, dark)), (bright, dark)
+PY
+check 65 'brightest place has [0-9]{3} of 65535: are they 12 bits in a file of 16\? if so, multiply all values by 16' \
+  "$folder/darker.pgm" --dpi 4800
+render black '"width_px":900,"height_px":700,"foils":[],"discs":[{"centre_mm":[-5,-5],"radius_mm":0.1}],
+  "scanner":{"background":5,"contrast":3}'
+check 65 'is the scan empty' "$folder/black.png"
+
 # A foil that is cut, or touches another: measured as far as it goes, and flagged.
 render cut "\"width_px\":4300,\"height_px\":1200,
   \"foils\":[{\"design\":{\"bump_count\":5},\"centre_mm\":[6,24]}]"

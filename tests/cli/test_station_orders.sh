@@ -6,7 +6,7 @@
 name=test_station_orders
 . "$(dirname "$0")/../support/station.sh"
 mkdir "$work/scans" "$work/erp"
-for seed in 1 2 3 4 5 6 7 8 9 10; do
+for seed in 1 2 3 4 5 6 7 8 9 10 11; do
   radius=3.32
   case $seed in 2 | 6 | 7 | 8 | 9) radius=3.4 ;; 10) radius=3.39 ;; esac
   printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200}, "foils": [{"rotate_deg": -90,
@@ -135,6 +135,24 @@ assert opened("000815") == ("000815", "00012", "01", "007", 5), opened("000815")
 assert opened("1e3") == ("1e3", "L13", "B", "K7", 4)
 assert opened("815") == ("000815", "00012", "01", "007", 5), opened("815")
 assert opened("4500012345678901234") == ("4500012345678901234", "1,5", "B", "K7", 4)
+
+# A name that is too long is refused, not cut; the longest one stays whole, and so do the letters of a closer's name.
+where, page = post("/order", number="ü" * 60, lot="L14")
+assert where == "422" and "The order is too long: at most 119 bytes." in page, (where, page)
+where, page = post("/order", number="N2", lot="L" * 128)
+assert where == "422" and "The lot is too long: at most 127 bytes." in page, (where, page)
+longest = "ü" * 59 + "x"
+where, page = post("/order", number=longest)
+assert f"Nobody knows the order <b>{longest}</b>" in page, (where, page)
+post("/order", number=" " + longest + " ", lot="ß" * 63)
+assert opened(longest)[:2] == (longest, "ß" * 63), opened(longest)
+shutil.copy(work + "/11.png", work + "/5.png")
+post("/scan")
+wait_until(lambda: (longest + "-001", "ß" * 63) in [row[:2] for row in foils()])
+assert "ß" * 63 in get("/trends?lot=" + urllib.parse.quote("ß" * 63))
+post("/close", lot="L9", by="é" * 127)
+wait_until(lambda: database.execute("SELECT 1 FROM lots WHERE by = ?", ("é" * 127,)).fetchone())
+post("/order", number="N1")
 
 # Coil and order of a foil are in its lot's files.
 post("/close", lot="L7", by="Ada")

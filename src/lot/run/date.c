@@ -43,6 +43,12 @@ static bool date_by_scans(const fg_lot *lot, span *days) {
   return isfinite(days->first);
 }
 
+const char *fg_lot_date_of(const fg_lot *lot, size_t item) {
+  size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
+  return column == FG_NO_COLUMN ? lot->records[item].date
+                                : fg_manifest_cell(&lot->manifest, item, column);
+}
+
 void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date) {
   span manifest = {NAN, NAN}, scans = {NAN, NAN};
   *date = (fg_lot_date){.from = NULL};

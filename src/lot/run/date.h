@@ -21,6 +21,9 @@ typedef struct fg_lot_date {
 /* Finds the dates. A column `date` with a cell that is no date is ignored. */
 void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date);
 
+/* Returns a scan's date: the cell of that column, else the day of the scan's file. */
+const char *fg_lot_date_of(const fg_lot *lot, size_t item);
+
 /* Returns the number of cells of that column that are no date; *first is the first of them, or
  * NULL. */
 size_t fg_lot_date_count_invalid(const fg_manifest *manifest, const char **first);

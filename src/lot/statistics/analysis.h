@@ -402,8 +402,11 @@ enum { FG_LOT_FOIL_ROWS_MAX = 300 };
 
 /* Parts of the analysis, each in a file of its own. */
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);
-/* Level at which a chart's signals are more than chance explains. */
-extern const double fg_lot_chart_level;
+/* Level at which a chart's signals are more than chance explains, percent, and as text. */
+#define FG_LOT_CHART_LEVEL_PCT       1
+#define FG_LOT_CHART_TEXT_OF(number) #number
+#define FG_LOT_CHART_AS_TEXT(number) FG_LOT_CHART_TEXT_OF(number)
+#define FG_LOT_CHART_LEVEL_TEXT      FG_LOT_CHART_AS_TEXT(FG_LOT_CHART_LEVEL_PCT)
 
 /* Fills the charts of a quantity whose values and sizes are known, and whether it is stable; where
  * it has a tolerance and a chart, also its capability, which needs `sd`. */

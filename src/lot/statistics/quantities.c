@@ -220,7 +220,7 @@ static fg_status find_foil_means(fg_context *ctx, const fg_lot_quantity *quantit
   return FG_OK;
 }
 
-const double fg_lot_chart_level = 0.01;
+static const double chart_level = FG_LOT_CHART_LEVEL_PCT / 100.0;
 
 fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                                 fg_lot_quantity *quantity) {
@@ -240,9 +240,9 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                          &quantity->means, &quantity->deviations) == FG_OK;
   quantity->chance = quantity->spread_chance = (fg_chart_chance){.steady = true};
   if (quantity->has_chart)
-    fg_chart_judge_individuals(&quantity->chart, rules, fg_lot_chart_level, &quantity->chance);
+    fg_chart_judge_individuals(&quantity->chart, rules, chart_level, &quantity->chance);
   if (quantity->has_subgroups)
-    fg_chart_judge_deviations(&quantity->deviations, quantity->size, rules, fg_lot_chart_level,
+    fg_chart_judge_deviations(&quantity->deviations, quantity->size, rules, chart_level,
                               &quantity->spread_chance);
   quantity->stable =
       quantity->has_chart && quantity->chance.steady && quantity->spread_chance.steady;

@@ -56,20 +56,16 @@ static void put_characteristic(FILE *out, size_t number, const fg_lot_words *wor
   fprintf(out, "K2142/%zu %s\r\n", number, row->unit);
 }
 
-/* Puts the date as dd.mm.yyyy/hh:mm:ss, from the manifest's column `date`, else from the scan's
- * file. It has no zone and is read as local time: a time with a Z is UTC and is turned into that of
- * this machine's zone. */
+/* Puts the date as dd.mm.yyyy/hh:mm:ss. It has no zone and is read as local time: a time with a Z
+ * is UTC and is turned into that of this machine's zone. */
 static void put_date_field(FILE *out, const fg_lot *lot, size_t item, size_t number) {
-  size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
-  const char *text = column == FG_NO_COLUMN ? lot->records[item].date
-                                            : fg_manifest_cell(&lot->manifest, item, column);
+  const char *text = fg_lot_date_of(lot, item);
   double days = fg_date_days(text);
   char date[FG_DATE_TEXT];
   struct tm local;
   if (!isfinite(days)) return;
   time_t seconds = (time_t)llround(days * 86400);
-  bool is_utc = text[strlen(text) - 1] == 'Z';
-  if (!(is_utc ? localtime_r(&seconds, &local) : gmtime_r(&seconds, &local))) return;
+  if (!(fg_date_is_utc(text) ? localtime_r(&seconds, &local) : gmtime_r(&seconds, &local))) return;
   strftime(date, sizeof date, "%d.%m.%Y/%H:%M:%S", &local);
   fprintf(out, "K0004/%zu %s\r\n", number, date);
 }

@@ -284,7 +284,7 @@ static const fg_member quantity_rows[] = {
      .words = "chart of the foils' means"},
     {FG_FLAG("stable", fg_lot_quantity, stable), .present = has_chart,
      .words = "chance explains the signals on the charts of individuals and deviations, at a level "
-              "of 1 %"},
+              "of " FG_LOT_CHART_LEVEL_TEXT " %"},
     {FG_NUMBER("signals_by_chance", fg_lot_quantity, chance.expected), .present = has_chart,
      .words = "on the chart of individuals of a steady process, expected"},
     {FG_COUNT("signals_explained", fg_lot_quantity, chance.max), .present = has_chart,

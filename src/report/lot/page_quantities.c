@@ -127,10 +127,11 @@ static bool is_charted(const fg_lot_analysis *analysis, const fg_lot_quantity *q
 }
 
 static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
-  fputs("<h2>How the process runs</h2>\n<p class=\"note\">Red, dashed: three sigma from foil to "
-        "foil about the mean. Red squares: signals. What chance explains "
-        "has a level of 1 %: of 100 steady charts about one has more.</p>\n",
-        out);
+  fprintf(out,
+          "<h2>How the process runs</h2>\n<p class=\"note\">Red, dashed: three sigma from foil to "
+          "foil about the mean. Red squares: signals. What chance explains "
+          "has a level of %d %%: of 100 steady charts about %d has more.</p>\n",
+          FG_LOT_CHART_LEVEL_PCT, FG_LOT_CHART_LEVEL_PCT);
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (is_charted(analysis, &analysis->quantities[i]))
       put_control_chart(out, analysis, &analysis->quantities[i]);

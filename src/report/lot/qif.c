@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "core/file.h"
 #include "core/json_writer.h"
@@ -177,21 +178,20 @@ static void put_qif_measurement(const qif *q, size_t id, size_t i, double value,
   fprintf(q->out, "</Value></%sCharacteristicMeasurement>\n", one->row->characteristic);
 }
 
-/* Puts the time from the manifest's column `date`, else from the scan's file; the standard wants
- * UTC. */
+/* Puts the date as xs:dateTime. One without a zone stays without: nothing says which it is. */
 static void put_inspection_start(const qif *q, const fg_lot_foil *foil) {
-  const fg_lot *lot = q->analysis->lot;
-  size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
-  double days =
-      fg_date_days(column == FG_NO_COLUMN ? lot->records[foil->item].date
-                                          : fg_manifest_cell(&lot->manifest, foil->item, column));
-  char date[FG_DATE_TEXT];
+  const char *text = fg_lot_date_of(q->analysis->lot, foil->item);
+  double days = fg_date_days(text);
+  char date[FG_DATE_UTC];
+  struct tm when;
   if (!isfinite(days)) return;
-  fg_date_format(days, date);
+  time_t seconds = (time_t)llround(days * 86400);
+  if (!gmtime_r(&seconds, &when)) return;
+  strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &when);
   fprintf(q->out,
           "<InspectionTraceability><InspectionStart>%s%s</InspectionStart></InspectionTraceability>"
           "\n",
-          date, strchr(date, 'T') ? ":00Z" : "T00:00:00Z");
+          date, fg_date_is_utc(text) ? "Z" : "");
 }
 
 static fg_verdict find_part_verdict(const fg_measured_part *part) {

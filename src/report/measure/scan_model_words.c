@@ -261,13 +261,14 @@ fg_status fg_html_corrected(fg_context *ctx, FILE *out, const fg_scanner_model *
                             const char *moved, const char *added) {
   char *text;
   if (!model) return FG_OK;
-  fputs("<p class=\"corrected\"><b>Corrected by the scanner&#39;s model</b> ", out);
+  fputs("<p class=\"corrected\"><b>Corrected by the scanner&#39;s model</b> <span>", out);
   fg_status status = title_of(ctx, model, &text);
   FG_TRY(put_model_text(out, status, text));
-  fputs(". It corrects ", out);
+  fputs("</span>. <span>It corrects ", out);
   status = effects_of(ctx, model, &text);
   FG_TRY(put_model_text(out, status, text));
-  if (moved[0]) fprintf(out, ". It moved %s, and added %s", moved, added);
+  fputs("</span>", out);
+  if (moved[0]) fprintf(out, ". <span>It moved %s, and added %s</span>", moved, added);
   fputs(fg_scanner_model_is_tied(model)
             ? ". Other explanations did as well when it was found; u holds how far from "
               "it each of them would have put a value.</p>\n"
@@ -288,7 +289,8 @@ fg_status fg_html_model_facts(fg_context *ctx, FILE *out, const fg_scanner_model
   fg_status status = title_of(ctx, model, &text);
   FG_TRY(put_model_text(out, status, text));
   fprintf(out,
-          "</dd>\n<dt>Its SHA-256</dt><dd>%s</dd>\n<dt>Its region</dt><dd>x %.4g to %.4g, y %.4g "
+          "</dd>\n<dt>Its SHA-256</dt><dd translate=\"no\">%s</dd>\n<dt>Its region</dt><dd>x %.4g "
+          "to %.4g, y %.4g "
           "to %.4g mm of the glass</dd>\n",
           facts.sha256, facts.low_mm[0], facts.high_mm[0], facts.low_mm[1], facts.high_mm[1]);
   return FG_OK;
