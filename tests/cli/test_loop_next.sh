@@ -32,7 +32,7 @@ told plate.txt --form discs plate.png
 grep -q 'next: Correct the scanner.*every scan of this scanner' plate.txt || fail "a scale: $(grep next: plate.txt)"
 grep -Eq 'disc 1: D [0-9.]+ -> [0-9.]+ \+- [0-9.]+ mm, rms ' plate.txt || fail "discs without U: $(grep 'disc 1' plate.txt)"
 
-render_foil jump 3 -90 '{"id":"scan.row_step","amplitude_um":21,"y_mm":9}' 1200
+render_foil jump 3 -90 '{"id":"scan.row_step","amplitude_um":12,"y_mm":9}' 2400
 told jump.txt jump.png --without scan.row_step
 grep -q 'state of the picture: row_jumps' jump.txt && grep -q '^unattributed' jump.txt || fail "rows that jump: $(cat jump.txt)"
 grep -q 'next: Scan again without a pause' jump.txt || fail "rows that jump: $(grep next: jump.txt)"
@@ -42,4 +42,4 @@ grep -q 'every scan of this scanner' jump.txt && fail "lost rows are taken for e
   fail "bump 1 has $(grep -o '<text class="bump"[^>]*>1<' jump.html | wc -l) numbers in the drawings before and after"
 # On paper a table that runs on repeats its head.
 grep -qE '<table[^>]*><tr>' jump.html && fail "a table of the page has no head: $(grep -oE '<table[^>]*><tr>.{60}' jump.html | head -1)"
-exit 0
+exit $failed
