@@ -92,6 +92,15 @@ static fg_status read_one(const fg_place *place, const cJSON *item, const fg_spe
   return FG_OK;
 }
 
+static fg_status fail_unknown(const fg_place *place, const cJSON *item, const fg_spec_row *table) {
+  char what[400] = "there is no such member";
+  size_t length = strlen(what);
+  for (const fg_spec_row *row = table; row->kind != FG_SPEC_END && length < sizeof what; row++)
+    length += (size_t)snprintf(what + length, sizeof what - length, "%s%s",
+                               row == table ? "; there are " : ", ", row->name);
+  return fg_member_fail(place, item->string, item, what);
+}
+
 fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_spec_row *table,
                           void *base) {
   if (!cJSON_IsObject(object)) return fg_member_fail(place, "", object, "must be an object");
@@ -100,8 +109,7 @@ fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_s
     const fg_spec_row *row = table;
     while (row->kind != FG_SPEC_END && strcmp(row->name, item->string) != 0)
       row++;
-    if (row->kind == FG_SPEC_END)
-      return fg_member_fail(place, item->string, item, "there is no such member");
+    if (row->kind == FG_SPEC_END) return fail_unknown(place, item, table);
     if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item)
       return fg_member_fail(place, item->string, item, "given twice");
     FG_TRY(read_one(place, item, row, base));

@@ -10,6 +10,7 @@
 
 #include "core/spread.h"
 #include "foilgauge/render.h"
+#include "report/scan_loop/parts.h"
 #include "scan_loop/state.h"
 #include "scan_loop/verdict.h"
 #include "support/test.h"
@@ -83,6 +84,13 @@ static const char *advice_of(const fg_scan_loop *loop, size_t i) {
   return loop->result.advice[i];
 }
 
+static void assert_summary_says(const fg_scan_loop *loop, const char *words) {
+  char *summary = NULL;
+  assert_ok(&test_context, fg_scan_loop_sentence(&test_context, &loop->result, &summary));
+  assert_has(summary, words);
+  free(summary);
+}
+
 static void statements_on_a_foil_agree(void **state) {
   (void)state;
   fg_scan_loop *loop = run_loop(FOIL FAINT, FG_FOIL_CLASSICAL);
@@ -103,6 +111,10 @@ static void statements_on_a_foil_agree(void **state) {
   loop->error_before.held_out_rms = 1.5;
   loop->error_after.held_out_rms = 0.2;
   assert_consistent(loop, "a note, and a scan kept aside");
+  assert_summary_says(loop, " falls from 1.5 µm to 0.2 µm.");
+  loop->error_after.held_out_rms = 1.5001;
+  assert_consistent(loop, "an error that does not change");
+  assert_summary_says(loop, " it stays at 1.5 µm.");
   fg_scan_loop_free(loop);
 }
 

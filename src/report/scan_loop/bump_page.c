@@ -114,10 +114,10 @@ static void put_bump_unclaimed(FILE *out, const fg_scan_result_response *respons
 }
 
 static void put_candidates(FILE *out, const fg_scan_result_bumps *bumps) {
-  fputs(
-      "<div class=\"scroll\"><table><tr><th>effect over the bumps</th><th class=\"w\">verdict</th>"
-      "<th class=\"w\">size, ± U = 2u</th><th>p</th></tr>\n",
-      out);
+  fputs("<div class=\"scroll\"><table><thead><tr><th>effect over the bumps</th><th "
+        "class=\"w\">verdict</th>"
+        "<th class=\"w\">size, ± U = 2u</th><th>p</th></tr></thead>\n",
+        out);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     for (size_t m = 0; m < bumps->response[r].claims; m++)
       put_bump_claim(out, &bumps->response[r], &bumps->response[r].claim[m]);

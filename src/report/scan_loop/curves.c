@@ -108,8 +108,8 @@ static void put_effect_details(FILE *out, const fg_scan_result_claim *claim) {
 }
 
 static void put_parameters(FILE *out, const fg_scan_result *result) {
-  fputs("<div class=\"scroll\"><table><tr><th>effect</th><th class=\"w\">equation</th>"
-        "<th class=\"w\">parameters, ± U = 2u</th></tr>\n",
+  fputs("<div class=\"scroll\"><table><thead><tr><th>effect</th><th class=\"w\">equation</th>"
+        "<th class=\"w\">parameters, ± U = 2u</th></tr></thead>\n",
         out);
   for (size_t i = 0; i < result->claims; i++)
     put_effect_details(out, &result->claim[i]);

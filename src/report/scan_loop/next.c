@@ -16,6 +16,12 @@ static bool of_glass(const fg_scan_result_claim *claim) {
   return claim->coordinate == FG_SCAN_X || claim->coordinate == FG_SCAN_Y;
 }
 
+static bool has_row_jumps(const fg_scan_result *result) {
+  for (size_t i = 0; i < result->scans; i++)
+    if (result->scan[i].before->picture.findings & FG_PICTURE_ROW_JUMPS) return true;
+  return false;
+}
+
 static sources find_sources(const fg_scan_result *result) {
   sources found = {.bumps = result->bumps.curve != NULL};
   for (size_t i = 0; i < result->claims; i++) {
@@ -71,6 +77,12 @@ static fg_status tell_apart(fg_context *ctx, const fg_scan_result *result, char 
 
 static fg_status correct_scanner(fg_context *ctx, const fg_scan_result *result, sources found,
                                  char **words, char **commands) {
+  if (has_row_jumps(result))
+    return fg_text_print(
+        ctx, words,
+        "Scan again without a pause (a smaller window, a lower resolution), and run the loop on "
+        "that scan: the rows of this picture jump, as where the carriage stops. Other scans do not "
+        "share that, so write no model of the scanner from it.");
   FG_TRY(fg_text_print(
       ctx, words,
       "Correct the scanner: what was found goes with the glass%s, so every scan of this scanner "
@@ -87,7 +99,8 @@ static const char *for_part(const fg_scan_result *result, sources found) {
            "shape that turns with them is theirs. The dimensions stand as measured.";
   if (found.part)
     return "Correct the part, not the scanner: what was found turns with the foil, so look at the "
-           "die, the press or how the foil was held; the dimensions below are without it.";
+           "die, the press or how the foil was held; the dimensions stand as measured, since "
+           "form is not subtracted.";
   if (found.width)
     return "Look at the sheet: its thickness changes along the strip; radii and heights of the "
            "midline stand.";

@@ -190,9 +190,9 @@ static void put_unclaimed_row(FILE *out, const fg_scan_result_unclaimed *one) {
 
 static void put_candidates(FILE *out, const fg_scan_result *result) {
   fputs("<section><h2 class=\"first\">Candidates and verdicts</h2>\n<div class=\"scroll\"><table>"
-        "<tr><th>effect</th><th class=\"w\">verdict</th><th class=\"w\">size, ± U = 2u</th>"
+        "<thead><tr><th>effect</th><th class=\"w\">verdict</th><th class=\"w\">size, ± U = 2u</th>"
         "<th>alone it would take<br>of the residual</th><th>not absorbed<br>by the circles</th>"
-        "</tr>\n",
+        "</tr></thead>\n",
         out);
   for (size_t i = 0; i < result->claims; i++)
     put_claim_row(out, &result->claim[i]);
@@ -290,8 +290,8 @@ static void put_edge_noise(FILE *out, const fg_scan_noise *noise) {
 }
 
 static void put_noise_words(FILE *out, const fg_scan_noise *noise) {
-  fputs("<div class=\"scroll\"><table><tr><th>noise of a row</th><th>white, sd</th>"
-        "<th>shared by<br>neighbours, sd</th><th>over</th></tr>\n",
+  fputs("<div class=\"scroll\"><table><thead><tr><th>noise of a row</th><th>white, sd</th>"
+        "<th>shared by<br>neighbours, sd</th><th>over</th></tr></thead>\n",
         out);
   (noise->discs ? put_disc_noise : put_edge_noise)(out, noise);
   fputs("</table></div>\n", out);

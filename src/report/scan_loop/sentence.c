@@ -59,22 +59,29 @@ static fg_status append_explanations(fg_context *ctx, const fg_scan_result *resu
   return FG_OK;
 }
 
+/* Writes "falls from 2 µm to 1 µm", or "stays at 2 µm" where the digits shown do not tell. */
+static void change_words(double before_um, double after_um, char *words, size_t size) {
+  char before[32], after[32];
+  fg_scan_loop_length_words(before_um, before, sizeof before);
+  fg_scan_loop_length_words(after_um, after, sizeof after);
+  if (strcmp(before, after) == 0)
+    fg_text_clip(words, size, "stays at %s", after);
+  else
+    fg_text_clip(words, size, "%s from %s to %s", after_um < before_um ? "falls" : "rises", before,
+                 after);
+}
+
 static fg_status say_errors(fg_context *ctx, const fg_scan_result *result, char **text) {
-  char before[32], after[32], floor_words[32];
-  fg_scan_loop_length_words(result->before.rms, before, sizeof before);
-  fg_scan_loop_length_words(result->after.rms, after, sizeof after);
+  char change[96], floor_words[32];
+  change_words(result->before.rms, result->after.rms, change, sizeof change);
   fg_scan_loop_length_words(result->noise_floor_um, floor_words, sizeof floor_words);
-  FG_TRY(fg_text_append(
-      ctx, text, " The edge residual %s from %s to %s rms; the noise alone makes %s.",
-      result->after.rms <= result->before.rms ? "falls" : "rises", before, after, floor_words));
+  FG_TRY(fg_text_append(ctx, text, " The edge residual %s rms; the noise alone makes %s.", change,
+                        floor_words));
   char held_out[FG_HELD_OUT_WORDS];
   fg_scan_loop_held_out_words(result, held_out);
   if (!held_out[0] || !isfinite(result->before.held_out_rms)) return FG_OK;
-  fg_scan_loop_length_words(result->before.held_out_rms, before, sizeof before);
-  fg_scan_loop_length_words(result->after.held_out_rms, after, sizeof after);
-  return fg_text_append(
-      ctx, text, " On %s it %s from %s to %s.", held_out,
-      result->after.held_out_rms <= result->before.held_out_rms ? "falls" : "rises", before, after);
+  change_words(result->before.held_out_rms, result->after.held_out_rms, change, sizeof change);
+  return fg_text_append(ctx, text, " On %s it %s.", held_out, change);
 }
 
 /* Numbers of foils, or of scans of discs, that keep a dimension as measured. */

@@ -137,8 +137,9 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
   }
   for (size_t d = 0; d < before->disc_count && d < after->disc_count; d++) {
     const fg_disc *b = &before->discs[d], *a = &after->discs[d];
-    fprintf(out, "%s disc %d: D %.5f -> %.5f mm, rms %.2f -> %.2f um\n", before->scan, b->number,
-            b->diameter_mm, a->diameter_mm, b->rms_um, a->rms_um);
+    fprintf(out, "%s disc %d:", before->scan, b->number);
+    put_moved(out, "D", b->diameter_mm, a->diameter_mm, a->u_diameter_mm);
+    fprintf(out, ", rms %.2f -> %.2f um\n", b->rms_um, a->rms_um);
     if (d + 1 == before->disc_count) put_choice(out, "R of all discs", &a->choice, tied);
   }
 }

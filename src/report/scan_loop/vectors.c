@@ -142,6 +142,16 @@ static void put_needles(const vectors *v, needle_part part) {
   fputs("\"/>\n", v->out);
 }
 
+/* Returns the end of a bump's rows, over the gaps that lost edges leave in its arc. */
+static size_t bump_end(const vectors *v, size_t from) {
+  const fg_scan_result_row *row = v->result->row;
+  size_t end = arc_end(v, from);
+  while (row[from].bump && end < v->result->rows && row[end].bump == row[from].bump &&
+         row[end].scan == row[from].scan)
+    end = arc_end(v, end);
+  return end;
+}
+
 /* Numbers inside the bumps, away from the needles. */
 static void put_bump_numbers(const vectors *v) {
   const fg_scan_result *result = v->result;
@@ -150,7 +160,7 @@ static void put_bump_numbers(const vectors *v) {
     if (result->view[k].scan == v->scan) count += result->view[k].bumps;
   if (count > NUMBERS_MAX) return;
   for (size_t i = 0, end; i < result->rows; i = end) {
-    end = arc_end(v, i);
+    end = bump_end(v, i);
     const fg_scan_result_row *row = &result->row[i + (end - i) / 2];
     if (!row->bump || !is_row_shown(v, i)) continue;
     fg_point p = place_in_drawing(v, row->ideal_mm);
