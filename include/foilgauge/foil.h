@@ -435,8 +435,8 @@ void fg_measurement_free(fg_measurement *measurement);
  * foil->strip is the input; everything else of `foil` is set. Defects of the foil or a bump are
  * flags, not errors; errors are FG_ERR_MEMORY only. A foil that has the design's shape but not its
  * size is not measured: its scan's resolution must be wrong. A foil beyond all springback and
- * damage of the design's foil keeps its values and is flagged FG_FOIL_NOT_THIS_DESIGN. The result
- * does not depend on `threads` (0: all cores). */
+ * damage, or whose bumps may be those of a part that touches it, keeps its values, flagged
+ * FG_FOIL_NOT_THIS_DESIGN. The result does not depend on `threads` (0: all cores). */
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
                           fg_foil *foil);
 

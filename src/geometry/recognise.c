@@ -56,6 +56,15 @@ static void tell_other_bumps(const fg_design *design, const fg_foil *foil, char 
     snprintf(why, size, "%zu bumps, where the design has %zu", bumps, stated);
 }
 
+/* The line of a foil that touches another part may end there, or go over to the other part: more
+ * bumps than the design's are then no defect, nor are fewer, unless empty places explain them. */
+static bool may_be_mixed(const fg_design *design, const fg_foil *foil) {
+  int last = 0, stated = (int)design->bumps.count;
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number > last) last = foil->bumps[i].number;
+  return foil->flags & FG_FOIL_TOUCHES_OTHER && stated && last != stated;
+}
+
 void fg_foil_recognise(const fg_design *design, fg_foil *foil) {
   const fg_overall *o = &foil->overall;
   char why[sizeof foil->error - 64] = "";
@@ -67,8 +76,15 @@ void fg_foil_recognise(const fg_design *design, fg_foil *foil) {
              o->radius_mm, o->u_radius_mm);
   else if (fg_foil_traits_of(design->kind)->has_bumps)
     tell_other_bumps(design, foil, why, sizeof why);
-  if (!why[0]) return;
+  bool mixed = fg_foil_traits_of(design->kind)->has_bumps && may_be_mixed(design, foil);
+  if (!why[0] && !mixed) return;
   foil->flags |= FG_FOIL_NOT_THIS_DESIGN;
-  snprintf(foil->error, sizeof foil->error,
-           "no foil of the design (or the resolution is wrong): %s", why);
+  if (why[0])
+    snprintf(foil->error, sizeof foil->error,
+             "no foil of the design (or the resolution is wrong): %s", why);
+  else
+    snprintf(foil->error, sizeof foil->error,
+             "another part touches it, and its line has %zu bump%s where the design has %zu: lay "
+             "the parts apart and scan them again",
+             foil->bump_count, foil->bump_count == 1 ? "" : "s", design->bumps.count);
 }

@@ -5,8 +5,8 @@
 
 #include "foilgauge/foil.h"
 
-/* Flags a part that cannot be a foil of the design, whatever its springback and damage, with the
- * reason in `error`. */
+/* Flags a part that cannot be a foil of the design, whatever its springback and damage, or whose
+ * bumps may be another part's that touches it, with the reason in `error`. */
 void fg_foil_recognise(const fg_design *design, fg_foil *foil);
 
 #endif

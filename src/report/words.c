@@ -67,7 +67,7 @@ static const fg_flag_words foil_flags[] = {
      "what that does. Scan to PNG or TIFF."},
     {FG_FOIL_NOT_MEASURED, "not_measured", "The foil could not be measured."},
     {FG_FOIL_NOT_THIS_DESIGN, "not_this_design",
-     "It cannot be a foil of this design: its values stand, and are not judged."},
+     "As seen, it is no foil of this design: its values stand, and are not judged."},
     {FG_FOIL_BEYOND_MODEL_REGION, "beyond_model_region",
      "It reaches beyond the region that the scanner's model was found in: there the correction is "
      "not known to hold."},

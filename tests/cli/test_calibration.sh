@@ -97,6 +97,26 @@ assert c["u_mean_mm"] > 1.1 * d["u_mean_mm"] and c["u_circularity_mm"] < 2 * d["
 # Stiffness over the design's is of ratios t / R: a scale leaves it.
 assert a["stiffness"]["u_normalised_by_calibration"] < 1e-4
 P
+# Capability holds limits against a mean that all foils' common error moves: its intervals hold that error, and are missing where
+# nothing is known of the scale.
+room='"tolerances": {"radius_mm": {"min": 3.3, "max": 3.5}}'
+design ", $room, \"calibration\": \"not needed: rendered\"" known.json
+design ", $room, \"calibration\": {\"scale\": {\"u_rel\": 2e-3}}" wide.json
+design ", $room" unknown.json
+for d in known wide unknown; do
+  "$program" lot scans --name d --design $d.json --pages none -o lot_$d >/dev/null 2>&1
+done
+checks - <<'P' || fail "capability and the calibration"
+import json, math
+known, wide, unknown = (json.load(open(f"lot_{d}/lot.json"))["quantities"]["radius_mm"] for d in ("known", "wide", "unknown"))
+a, b, c = (q["capability"]["ppk"] for q in (known, wide, unknown))
+reach = 1.959964 * wide["u_mean"] / (3 * wide["sd"])
+assert reach > 0.1 and abs(a["value"] - b["value"]) < 1e-6, (reach, a, b)
+assert abs(b["value"] - b["low"] - math.hypot(a["value"] - a["low"], reach)) < 1e-3, (reach, a, b)
+high = min(b["value"] + math.hypot(a["high"] - a["value"], reach), max(a["high"], wide["capability"]["pp"]["high"]))
+assert abs(b["high"] - high) < 1e-3, (reach, a, b)
+assert c["low"] is None and c["high"] is None and c["value"] > 0, c
+P
 grep -q 'How well the means are known' lot/index.html || fail "the lot's page has no line of the calibration"
 grep -q 'no calibration is stated' bare/index.html || fail "the lot's page does not say that none is stated"
 expect 0 '' "$program" lot --index index.html lot bare

@@ -150,6 +150,18 @@ render touch "\"width_px\":7400,\"height_px\":1400,\"foils\":[
 code=$?
 [ $code -le 2 ] || fail "exit $code of touching foils"
 has '"touches_other"' touch
+# Foils that cross are good foils: the line goes over from one to the other (7 bumps), or ends (1 bump). Neither fails.
+cat >"$folder/five.design" <<'J'
+{"schema":"foilgauge/design/1","bump_count":5,"calibration":"not needed: the scan is rendered",
+ "tolerances":{"height_mm":{"min":0.5,"max":0.6}}}
+J
+five='{"design":{"bump_count":5},"centre_mm":[24,24]}'
+for second in '24.615],"rotate_deg":-83.33' '24.3],"rotate_deg":-85'; do
+  render cross "\"foils\":[$five,{\"design\":{\"bump_count\":5},\"centre_mm\":[24,$second}],\"scanner\":{\"dpi\":1200}"
+  check 2 '' "$folder/cross.png" --design "$folder/five.design"
+  has 'another part touches it, and its line has [0-9]+ bumps? where the design has 5: lay the parts apart' "$second"
+  if grep -q '"verdict": "fail"' "$folder/last.json"; then fail "a foil that crosses another fails: $second"; fi
+done
 
 # The resolution: impossible, missing, and one that makes the foil another size than its design.
 for dpi in 0 -4800 nan inf x 1e9 ''; do

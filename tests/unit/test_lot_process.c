@@ -75,6 +75,41 @@ static fg_lot_quantity radius_of_scans(size_t scans, bool named, size_t *again, 
   return radius; /* of it only numbers are read */
 }
 
+/* Page of the first `scans` scans of two foils by two operators, each twice. */
+static char *page_of_operators(size_t scans) {
+  static const char *const cells[] = {",a,X", ",a,X", ",a,Y", ",a,Y",
+                                      ",b,X", ",b,X", ",b,Y", ",b,Y"};
+  fg_design design;
+  fg_lot_analysis analysis;
+  char *page;
+  size_t size;
+  fg_design_default(&design);
+  design.bumps.count = BUMPS;
+  fg_lot lot = made_lot(&design, scans, BUMPS, ",foil,operator", cells);
+  for (size_t i = 0; i < scans; i++)
+    for (size_t k = 0; k < BUMPS; k++)
+      made_bump(&lot, i, k, 3.36 + 0.01 * (double)(i / 4) + 0.001 * (double)(i % 4 + k), 63);
+  assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
+  FILE *out = open_memstream(&page, &size);
+  assert_ok(NULL, fg_lot_write_page(NULL, &analysis, out));
+  fclose(out);
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+  return page;
+}
+
+/* One scan that is missing takes the gauge study away; the page says so. */
+static void a_missing_gauge_study_has_its_reason(void **state) {
+  (void)state;
+  static const char reason[] = "Here are 7 measured scans of 2 foils by 2 operators.";
+  char *whole = page_of_operators(8), *part = page_of_operators(7);
+  assert_non_null(strstr(whole, "Gauge repeatability"));
+  assert_null(strstr(whole, "it takes every foil by every operator"));
+  assert_non_null(strstr(part, reason));
+  free(whole);
+  free(part);
+}
+
 /* 24 scans of 8 foils say no more of the process than 8 do: the chart has a point for each foil,
  * and its limits are those from foil to foil, not from scan to scan. */
 static void scans_of_a_foil_count_once(void **state) {
@@ -281,6 +316,7 @@ static void the_margin_of_the_worst_is_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_missing_gauge_study_has_its_reason),
       cmocka_unit_test(scans_of_a_foil_count_once),
       cmocka_unit_test(foils_of_bearings_may_share_a_name),
       cmocka_unit_test(dies_in_turn_explain_the_signals),

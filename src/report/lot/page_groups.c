@@ -98,8 +98,29 @@ static bool find_gauge(const fg_subject *list, size_t i, fg_subject *element) {
   return i < analysis->gauge_count;
 }
 
+/* Says why there is no study, where foils were scanned again by several operators. */
+static void put_no_gauge(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot *lot = analysis->lot;
+  size_t part = fg_manifest_column(&lot->manifest, lot->settings.part_column);
+  size_t who = fg_manifest_column(&lot->manifest, lot->settings.operator_column);
+  fg_manifest_words parts = {.count = 0}, operators = {.count = 0};
+  if (part == FG_NO_COLUMN || who == FG_NO_COLUMN || !analysis->scanned_again) return;
+  fg_lot_list_words(analysis, part, &parts);
+  fg_lot_list_words(analysis, who, &operators);
+  if (parts.count < 2 || operators.count < 2) return;
+  fprintf(out,
+          "<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n"
+          "<p class=\"note\">Not stated: it takes every foil by every operator, equally often and "
+          "at least twice, each with all its values. Here are %zu measured scans of %zu foils by "
+          "%zu operators.</p>\n</section>\n",
+          analysis->foil_count, parts.count, operators.count);
+}
+
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
-  if (!analysis->gauge_count) return;
+  if (!analysis->gauge_count) {
+    put_no_gauge(out, analysis);
+    return;
+  }
   fputs("<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n", out);
   fg_html_table(out, &fg_lot_gauge_members, &(fg_subject){.whole = analysis}, find_gauge);
   fputs("</section>\n", out);

@@ -75,7 +75,9 @@ static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
           "<p class=\"note\">Intervals at %.4g %%. Cp and Cpk speak of what "
           "the process will do, so they are stated only while chance explains the signals of its "
           "control charts; "
-          "otherwise Pp and Ppk tell what it did.</p>\n",
+          "otherwise Pp and Ppk tell what it did. The intervals of Ppk and Cpk hold the error that "
+          "all foils share (calibration, tone curve); where nothing is known of the scanner's "
+          "scale, they have none.</p>\n",
           100 * analysis->lot->settings.confidence);
 }
 
