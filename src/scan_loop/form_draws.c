@@ -72,11 +72,17 @@ static fg_status draw_one(fg_context *ctx, void *shared, size_t draw) {
   return FG_OK;
 }
 
+/* By how much of itself a deviation may grow over what its arc may be longer. A shape that is nearly
+ * all at the ends tells no more than that. */
+static double growth(double um, double sure) {
+  return sure > 0 ? fmin(1, fabs(um / sure - 1)) : 0;
+}
+
 static void add_draw(size_t circles, const double *um, const double *sure, fg_form_moments *m) {
   for (size_t k = 0; k < circles; k++) {
     m->mean[k] += um[k] / DRAWS;
     m->square[k] += um[k] * um[k] / DRAWS;
-    m->ends[k] += (sure[k] > 0 ? um[k] * fabs(um[k] / sure[k] - 1) : 0) / DRAWS;
+    m->ends[k] += um[k] * growth(um[k], sure[k]) / DRAWS;
   }
 }
 

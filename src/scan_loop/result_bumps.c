@@ -161,9 +161,9 @@ static fg_status put_response(fg_context *ctx, const fg_scan_loop_bumps *bumps, 
   out->words = what->words;
   out->unit = what->unit;
   out->model = bumps->forming ? what->forming_model : what->model;
-  out->level = what->scale * from.level->level;
-  out->u_level = what->scale * from.level->u_level;
   out->judged = from.level->judged;
+  out->level = out->judged ? what->scale * from.level->level : NAN;
+  out->u_level = out->judged ? what->scale * from.level->u_level : NAN;
   out->error = scaled(&from.level->error, what->scale);
   for (size_t m = 0; m < from.level->result.claims; m++)
     fill_bump_claim(&from, &from.level->result.claim[m], &out->claim[out->claims++]);
