@@ -152,7 +152,7 @@ void fg_whitening_close(fg_whitening *w) {
   *w = (fg_whitening){.rows = 0};
 }
 
-/* Where a filter of rows in their order is. */
+/* Place of a filter of rows in their order. */
 typedef struct run {
   size_t row, start; /* start: of the row's arc */
   double state;
@@ -188,8 +188,8 @@ static inline void filter_next(const fg_whitening *w, double *v, run *at) {
 
 /* No arc knows of the ones before it, so quarters of the rows are whitened side by side: in a
  * single run, each row would wait for the row before. */
-static inline void apply(const fg_whitening *w, double *v,
-                         void (*next)(const fg_whitening *, double *, run *)) {
+static inline void apply_to_quarters(const fg_whitening *w, double *v,
+                                     void (*next)(const fg_whitening *, double *, run *)) {
   run at[FG_WHITENING_QUARTERS];
   size_t common = w->rows;
   for (size_t q = 0; q < FG_WHITENING_QUARTERS; q++) {
@@ -208,7 +208,7 @@ static inline void apply(const fg_whitening *w, double *v,
 void fg_whitening_apply(const fg_whitening *w, double *values) {
   if (!w->band) return;
   if (w->exponential)
-    apply(w, values, filter_next);
+    apply_to_quarters(w, values, filter_next);
   else
-    apply(w, values, factor_next);
+    apply_to_quarters(w, values, factor_next);
 }

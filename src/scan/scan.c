@@ -258,7 +258,7 @@ static int64_t rows_left(const fg_scan *scan) {
   return scan->info.height_px - scan->rows_read / scan->info.averaged[1];
 }
 
-/* Reads and checks what is less than a row of averages. */
+/* Reads and checks the last rows, too few for a row of averages. */
 static fg_status read_remainder(fg_context *ctx, fg_scan *scan) {
   while (scan->rows_read < (int64_t)scan->header.height_px)
     FG_TRY(read_one_row(ctx, scan, scan->fine));

@@ -15,7 +15,7 @@
 #include "effect/columns.h"
 #include "evidence/options.h"
 #include "foilgauge/report.h"
-#include "scan_loop/form_draws.h"
+#include "scan_loop/form_error_draws.h"
 
 enum { MODELS_MAX = 48 };
 /* Models of less weight, relative to the likeliest, change no mean; and a range leaves out what has
@@ -85,16 +85,16 @@ static fg_status fill_columns(fg_context *ctx, const fg_circles *c, const fg_evi
 }
 
 static fg_status find_deviations(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
-                                 const fg_evidence_model *model, fg_form_deviations *d) {
+                                 const fg_evidence_model *model, fg_form_error_deviations *d) {
   fg_evidence_posterior posterior;
   size_t count = 0, *index = NULL;
   fg_status status = FG_OK;
-  *d = (fg_form_deviations){.count = 0};
+  *d = (fg_form_error_deviations){.count = 0};
   for (size_t k = 0; k < model->parts; k++)
     count += is_of_part(model->part[k]) ? model->part[k]->count : 0;
   if (!count) return FG_OK;
   FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
-  FG_TRY_EXIT(fg_form_deviations_open(ctx, c, count, d));
+  FG_TRY_EXIT(fg_form_error_deviations_open(ctx, c, count, d));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *index, (void **)&index));
   size_t at = 0;
   for (size_t k = 0; k < model->parts; k++) {
@@ -110,18 +110,18 @@ static fg_status find_deviations(fg_context *ctx, fg_evidence_search *s, const f
   }
   factorise_covariance(count, d->lower);
 exit:
-  if (status != FG_OK) fg_form_deviations_close(d);
+  if (status != FG_OK) fg_form_error_deviations_close(d);
   free(index);
   fg_evidence_posterior_close(&posterior);
   return status;
 }
 
 static fg_status find_moments(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
-                              const fg_evidence_model *model, fg_form_moments *m) {
-  fg_form_deviations d;
+                              const fg_evidence_model *model, fg_form_error_moments *m) {
+  fg_form_error_deviations d;
   FG_TRY(find_deviations(ctx, s, c, model, &d));
-  fg_status status = fg_form_draw(ctx, c, &d, m);
-  fg_form_deviations_close(&d);
+  fg_status status = fg_form_error_draw(ctx, c, &d, m);
+  fg_form_error_deviations_close(&d);
   return status;
 }
 
@@ -140,13 +140,14 @@ static bool is_hidden(const fg_evidence_option *option, const fg_evidence_model 
  * it from that without. */
 static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
                                  const fg_evidence_model *model, const fg_evidence_option *option,
-                                 fg_form_moments *room, double *hidden) {
+                                 fg_form_error_moments *room, double *hidden) {
   fg_evidence_part part = {.effect = option->effect, .first = option->first, .count = option->each};
   fg_evidence_model with = *model;
-  fg_form_moments own = fg_form_moments_in(room->mean + FG_FORM_MOMENTS * c->count, c);
+  fg_form_error_moments own =
+      fg_form_error_moments_in(room->mean + FG_FORM_ERROR_MOMENTS * c->count, c);
   fg_evidence_effect_variances(&s->request.prior, option->effect, option->each, part.variance);
   with.part[with.parts++] = &part;
-  memset(own.mean, 0, FG_FORM_MOMENTS * c->count * sizeof *own.mean);
+  memset(own.mean, 0, FG_FORM_ERROR_MOMENTS * c->count * sizeof *own.mean);
   FG_TRY(find_moments(ctx, s, c, &with, &own));
   for (size_t k = 0; k < c->count; k++) {
     double before = room->mean[k];
@@ -160,7 +161,7 @@ static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const f
  * foil is not round because nothing was found. */
 static fg_status find_hidden(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
                              const fg_evidence_model *const *list, const double *weight,
-                             size_t models, fg_form_moments *room, double *hidden) {
+                             size_t models, fg_form_error_moments *room, double *hidden) {
   const fg_evidence_model *model = list[0];
   if (model->parts == FG_EVIDENCE_PARTS) return FG_OK;
   FG_TRY(find_moments(ctx, s, c, model, room));
@@ -174,7 +175,8 @@ static fg_status find_hidden(fg_context *ctx, fg_evidence_search *s, const fg_ci
 
 /* Returns true where the models of such values and smaller ones have a share, and those of larger
  * ones: of many scanner's faults each may be unlikely, not one of them. */
-static bool is_in_range(const fg_form_moments *m, size_t models, size_t circle, double value) {
+static bool is_in_range(const fg_form_error_moments *m, size_t models, size_t circle,
+                        double value) {
   double below = 0, above = 0;
   for (size_t k = 0; k < models; k++) {
     below += m[k].mean[circle] <= value ? m[k].weight : 0;
@@ -185,7 +187,7 @@ static bool is_in_range(const fg_form_moments *m, size_t models, size_t circle, 
 
 /* One circle over all models. Where one takes for the part's what another takes for the scanner's,
  * there is a range and no value. */
-static fg_form_error combine_models(const fg_form_moments *m, size_t models, size_t circle,
+static fg_form_error combine_models(const fg_form_error_moments *m, size_t models, size_t circle,
                                     double hidden) {
   double mean = 0, square = 0, low = INFINITY, high = 0, smallest = INFINITY, largest = 0;
   double within = 0, ends = 0;
@@ -234,17 +236,17 @@ fg_status fg_scan_loop_find_form_errors(fg_context *ctx, fg_scan_loop *loop, fg_
                                         const fg_evidence_verdict *verdict) {
   const fg_evidence_model *list[MODELS_MAX];
   double weight[MODELS_MAX], *numbers = NULL;
-  fg_form_moments m[MODELS_MAX + 1];
+  fg_form_error_moments m[MODELS_MAX + 1];
   fg_circles circles;
   fg_status status = FG_OK;
   size_t count = list_models(s, verdict, list, weight);
   FG_TRY(fg_circles_open(ctx, &loop->edge_fit, &circles));
   /* of every model, of the likeliest again, and of it with one effect more */
-  size_t each = FG_FORM_MOMENTS * circles.count;
+  size_t each = FG_FORM_ERROR_MOMENTS * circles.count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, each * (count + 2) + circles.count, sizeof *numbers,
                                  (void **)&numbers));
   for (size_t k = 0; k <= count; k++) {
-    m[k] = fg_form_moments_in(numbers + k * each, &circles);
+    m[k] = fg_form_error_moments_in(numbers + k * each, &circles);
     m[k].weight = k < count ? weight[k] : 0;
     if (k < count) FG_TRY_EXIT(find_moments(ctx, s, &circles, list[k], &m[k]));
   }
@@ -268,13 +270,13 @@ exit:
 /* Finds the deviations by the effects of the part in force: coefficients with their uncertainties.
  */
 static fg_status find_fitted(fg_context *ctx, const fg_circles *c, const fg_effect_set *set,
-                             fg_form_moments *m) {
-  fg_form_deviations d;
+                             fg_form_error_moments *m) {
+  fg_form_error_deviations d;
   size_t count = 0, at = 0;
   fg_status status = FG_OK;
   for (size_t e = 0; e < set->count; e++)
     count += set->effects[e].kind->midline ? set->effects[e].columns : 0;
-  FG_TRY(fg_form_deviations_open(ctx, c, count, &d));
+  FG_TRY(fg_form_error_deviations_open(ctx, c, count, &d));
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect_found *effect = &set->effects[e];
     fg_evidence_part part = {.effect = effect->kind, .count = effect->columns};
@@ -286,9 +288,9 @@ static fg_status find_fitted(fg_context *ctx, const fg_circles *c, const fg_effe
       d.lower[at * count + at] = effect->u_coefficient_um[i];
     }
   }
-  FG_TRY_EXIT(fg_form_draw(ctx, c, &d, m));
+  FG_TRY_EXIT(fg_form_error_draw(ctx, c, &d, m));
 exit:
-  fg_form_deviations_close(&d);
+  fg_form_error_deviations_close(&d);
   return status;
 }
 
@@ -300,9 +302,9 @@ static fg_status compare_with_set(fg_context *ctx, fg_scan_loop *loop) {
   double *numbers = NULL;
   fg_status status = FG_OK;
   FG_TRY(fg_circles_open(ctx, &loop->edge_fit, &circles));
-  FG_TRY_EXIT(
-      fg_memory_allocate(ctx, FG_FORM_MOMENTS * circles.count, sizeof *numbers, (void **)&numbers));
-  fg_form_moments m = fg_form_moments_in(numbers, &circles);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, FG_FORM_ERROR_MOMENTS * circles.count, sizeof *numbers,
+                                 (void **)&numbers));
+  fg_form_error_moments m = fg_form_error_moments_in(numbers, &circles);
   FG_TRY_EXIT(find_fitted(ctx, &circles, &loop->set, &m));
   for (size_t k = 0; k < circles.count; k++) {
     fg_form_error *error = &loop->form_errors[k];

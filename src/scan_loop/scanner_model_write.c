@@ -57,8 +57,8 @@ static bool holds_all_of_part(const fg_effect_set *set, const fg_effect_set *of)
   return true;
 }
 
-/* Returns true where tied explanations share what they take for the part's. Whether a foil or the
- * scanner does it is no matter of probabilities: such a tie keeps its whole range. */
+/* Returns true where tied explanations share their effects of the part. Probabilities cannot tell
+ * the scanner from a foil: such a tie keeps its whole range. */
 static bool has_probabilities(const fg_scan_loop *loop) {
   bool shared = loop->by_evidence;
   for (size_t k = 0; !loop->edge_fit.discs && k < loop->tie_count; k++)

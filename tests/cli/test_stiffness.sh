@@ -74,7 +74,7 @@ END
 # Defaults are the thesis's: load cell 1 %, optical probe 1.3 %; the help says the same.
 [ "$(value r.json '[r["options"][k] for k in ("u_force_pct", "u_displacement_pct")]')" = "[1, 1.3]" ] || fail "instruments"
 "$program" stiffness --help | tr -s ' \n' ' ' >help.txt
-grep -q "load cell.s scale (default: 1 %" help.txt && grep -q "displacement probe (default: 1.3 %" help.txt || fail "instruments in the help"
+grep -q "load cell.s scale (default: 1 %" help.txt && grep -q "displacement probe.s scale (default: 1.3 %" help.txt || fail "instruments in the help"
 # The thesis's plan: 0, 120 and 240 degrees are three axes; clearances of 200, 170, 170 um are smallest along 90 degrees.
 (echo $heading && make A 163.17 0 && make A 133.17 "120 240") >plan.csv
 run 0 "smallest along the axis .* and .* degrees" plan.csv --text -

@@ -325,7 +325,7 @@ static void three_named_causes_at_once_are_tied(void **state) {
   }
 }
 
-/* What was found is corrected: a likelier model without it, which the verdict has refused, has no
+/* Found effects are corrected: a likelier model without one, which the verdict has refused, has no
  * weight. */
 static void what_was_found_is_in_every_model_of_weight(void **state) {
   fg_context ctx = {0};

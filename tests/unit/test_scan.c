@@ -162,7 +162,7 @@ static void check_averages(const picture *p, const int averaged[2]) {
   free(samples);
 }
 
-/* What is less than a pixel at the right and below is left out, but read. */
+/* Less than a pixel at the right and below is left out, but read. */
 static void pixels_of_unequal_sides_are_averaged(void **state) {
   static const int ratios[][2] = {{2, 1}, {1, 2}, {3, 1}, {1, 4}};
   static const int types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_RGB};

@@ -166,8 +166,8 @@ static bool writes_weights(fg_scan_loop *loop) {
   return has;
 }
 
-/* Whether a foil or the scanner does it keeps its range; among causes of the scanner alone the
- * likelier one counts more. */
+/* A tie of the foil and the scanner keeps its range; among causes of the scanner alone the likelier
+ * one counts more. */
 static void a_tie_of_part_and_scanner_has_no_probabilities(void **state) {
   fg_scan_loop *loop = make_loop();
   (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scan_loop/form_draws.h"
+#include "scan_loop/form_error_draws.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,34 +11,34 @@
 enum { DRAWS = 64 };
 #define SEED 1
 
-fg_form_moments fg_form_moments_in(double *numbers, const fg_circles *c) {
-  return (fg_form_moments){
+fg_form_error_moments fg_form_error_moments_in(double *numbers, const fg_circles *c) {
+  return (fg_form_error_moments){
       .mean = numbers, .square = numbers + c->count, .ends = numbers + 2 * c->count};
 }
 
-void fg_form_deviations_close(fg_form_deviations *d) {
+void fg_form_error_deviations_close(fg_form_error_deviations *d) {
   free(d->columns);
   free(d->mean);
   free(d->lower);
-  *d = (fg_form_deviations){.count = 0};
+  *d = (fg_form_error_deviations){.count = 0};
 }
 
-fg_status fg_form_deviations_open(fg_context *ctx, const fg_circles *c, size_t count,
-                                  fg_form_deviations *d) {
+fg_status fg_form_error_deviations_open(fg_context *ctx, const fg_circles *c, size_t count,
+                                        fg_form_error_deviations *d) {
   fg_status status = FG_OK;
-  *d = (fg_form_deviations){.count = count};
+  *d = (fg_form_error_deviations){.count = count};
   FG_TRY_EXIT(fg_memory_allocate(ctx, count * c->rows + 1, sizeof(double), (void **)&d->columns));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof(double), (void **)&d->mean));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count * count + 1, sizeof(double), (void **)&d->lower));
 exit:
-  if (status != FG_OK) fg_form_deviations_close(d);
+  if (status != FG_OK) fg_form_error_deviations_close(d);
   return status;
 }
 
 /* Every draw writes to a place of its own. */
 typedef struct drawing {
   const fg_circles *circles;
-  const fg_form_deviations *deviations;
+  const fg_form_error_deviations *deviations;
   double *normal;    /* owned; DRAWS × deviations */
   double *um, *sure; /* DRAWS × circles: over all rows, over the sure ones */
 } drawing;
@@ -52,7 +52,7 @@ static void fill_normals(size_t count, double *normal) {
 static fg_status draw_one(fg_context *ctx, void *shared, size_t draw) {
   const drawing *all = shared;
   const fg_circles *c = all->circles;
-  const fg_form_deviations *d = all->deviations;
+  const fg_form_error_deviations *d = all->deviations;
   const double *normal = all->normal + draw * d->count;
   double *values = NULL;
   FG_TRY(fg_memory_allocate(ctx, c->rows + 1, sizeof *values, (void **)&values));
@@ -72,13 +72,14 @@ static fg_status draw_one(fg_context *ctx, void *shared, size_t draw) {
   return FG_OK;
 }
 
-/* By how much of itself a deviation may grow over what its arc may be longer. A shape that is nearly
- * all at the ends tells no more than that. */
+/* By how much of itself a deviation may grow over what its arc may be longer. A shape that is
+ * nearly all at the ends tells no more than that. */
 static double growth(double um, double sure) {
   return sure > 0 ? fmin(1, fabs(um / sure - 1)) : 0;
 }
 
-static void add_draw(size_t circles, const double *um, const double *sure, fg_form_moments *m) {
+static void add_draw(size_t circles, const double *um, const double *sure,
+                     fg_form_error_moments *m) {
   for (size_t k = 0; k < circles; k++) {
     m->mean[k] += um[k] / DRAWS;
     m->square[k] += um[k] * um[k] / DRAWS;
@@ -86,8 +87,8 @@ static void add_draw(size_t circles, const double *um, const double *sure, fg_fo
   }
 }
 
-fg_status fg_form_draw(fg_context *ctx, const fg_circles *c, const fg_form_deviations *d,
-                       fg_form_moments *m) {
+fg_status fg_form_error_draw(fg_context *ctx, const fg_circles *c,
+                             const fg_form_error_deviations *d, fg_form_error_moments *m) {
   drawing all = {.circles = c, .deviations = d};
   fg_status status = FG_OK;
   if (!d->count) return FG_OK;
