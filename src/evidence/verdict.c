@@ -78,17 +78,20 @@ static bool lowest_leads(fg_evidence_problem *p, const fg_evidence_part *part, c
   return lead >= LOWEST_SHARE * (lead + rest);
 }
 
-/* The numbers of a part: the first of `mean`, of `covariance` with rows of n. */
+/* Returns true for an effect that extends another one by its first number. */
+static bool is_led(const fg_effect *effect) {
+  return effect && effect->extends && effect->numbers == FG_EFFECT_LED;
+}
+
+/* `mean` and `covariance` begin with the numbers of the effect. */
 static bool lead_bears_name(const fg_effect *effect, const double *mean, const double *covariance) {
-  if (!effect->extends || effect->numbers != FG_EFFECT_LED) return true;
+  if (!is_led(effect)) return true;
   return fabs(mean[0]) >= LEADING_SIGMAS * sqrt(covariance[0]);
 }
 
 static bool holds_led(const fg_evidence_model *model) {
-  for (size_t k = 0; k < model->parts; k++) {
-    const fg_effect *effect = model->part[k]->effect;
-    if (effect && effect->extends && effect->numbers == FG_EFFECT_LED) return true;
-  }
+  for (size_t k = 0; k < model->parts; k++)
+    if (is_led(model->part[k]->effect)) return true;
   return false;
 }
 
@@ -100,9 +103,8 @@ fg_status fg_evidence_leads_bear_names(fg_context *ctx, fg_evidence_search *s,
   FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
   for (size_t k = 0; k < model->parts; k++) {
     size_t at = fg_evidence_first_of(s, model, k), n = posterior.count;
-    if (model->part[k]->effect)
-      *bear = *bear && lead_bears_name(model->part[k]->effect, posterior.mean + at,
-                                       posterior.covariance + at * n + at);
+    *bear = *bear && lead_bears_name(model->part[k]->effect, posterior.mean + at,
+                                     posterior.covariance + at * n + at);
   }
   fg_evidence_posterior_close(&posterior);
   return FG_OK;

@@ -71,6 +71,10 @@ fg_status fg_scanner_model_check_place(fg_context *ctx, const double dpi[2],
 fg_status fg_scanner_model_check_fields(fg_context *ctx, const char *member,
                                         const fg_field_list *list);
 
+/* Returns how far each component of a displacement ranges, mm, over places × places of its region.
+ */
+fg_point fg_scanner_model_span(const fg_field_list *list, int places);
+
 /* Displacements by a model, and their uncertainty. */
 typedef struct fg_model_uncertainty {
   fg_measurement each[FG_BENEFIT_EXPLANATIONS_MAX]; /* owned: by the model, then by the explanations

@@ -102,23 +102,26 @@ static fg_status check_field(fg_context *ctx, const char *member, size_t index,
   return FG_OK;
 }
 
+fg_point fg_scanner_model_span(const fg_field_list *list, int places) {
+  const fg_field_frame *f = &list->frame;
+  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
+  for (int i = 0; i < places * places; i++) {
+    double tx = i % places / (places - 1.0), ty = i / places / (places - 1.0);
+    fg_point d = fg_field_at(list, (fg_point){f->low_mm[0] + tx * (f->high_mm[0] - f->low_mm[0]),
+                                              f->low_mm[1] + ty * (f->high_mm[1] - f->low_mm[1])});
+    low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
+    high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
+  }
+  return (fg_point){high.x - low.x, high.y - low.y};
+}
+
 /* Returns the largest difference between the displacements of two places of the region, over its
  * length. */
 static double find_bend(const fg_field_list *list) {
-  enum { GRID = 9 };
+  enum { PLACES = 9 };
   const fg_field_frame *f = &list->frame;
-  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
-  for (int i = 0; i < GRID; i++)
-    for (int k = 0; k < GRID; k++) {
-      double tx = i / (GRID - 1.0), ty = k / (GRID - 1.0);
-      fg_point at = {f->low_mm[0] + tx * (f->high_mm[0] - f->low_mm[0]),
-                     f->low_mm[1] + ty * (f->high_mm[1] - f->low_mm[1])};
-      fg_point d = fg_field_at(list, at);
-      low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
-      high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
-    }
-  return hypot(high.x - low.x, high.y - low.y) /
-         fmax(f->high_mm[0] - f->low_mm[0], f->high_mm[1] - f->low_mm[1]);
+  fg_point span = fg_scanner_model_span(list, PLACES);
+  return hypot(span.x, span.y) / fmax(f->high_mm[0] - f->low_mm[0], f->high_mm[1] - f->low_mm[1]);
 }
 
 fg_status fg_scanner_model_check_fields(fg_context *ctx, const char *member,

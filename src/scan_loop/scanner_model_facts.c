@@ -10,17 +10,9 @@ _Static_assert((int)FG_SCANNER_MODEL_EFFECTS >= (int)FG_FIELDS_MAX, "every field
 
 /* Returns the half range, um, of the larger component of a displacement in its region. */
 static double half_range_um(const fg_field_list *list) {
-  enum { GRID = 65 };
-  const fg_field_frame *f = &list->frame;
-  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
-  for (int i = 0; i < GRID * GRID; i++) {
-    double tx = i % GRID / (GRID - 1.0), ty = i / GRID / (GRID - 1.0);
-    fg_point d = fg_field_at(list, (fg_point){f->low_mm[0] + tx * (f->high_mm[0] - f->low_mm[0]),
-                                              f->low_mm[1] + ty * (f->high_mm[1] - f->low_mm[1])});
-    low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
-    high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
-  }
-  return 500 * fmax(high.x - low.x, high.y - low.y);
+  enum { PLACES = 65 };
+  fg_point span = fg_scanner_model_span(list, PLACES);
+  return 500 * fmax(span.x, span.y);
 }
 
 static double effect_half_range_um(const fg_scanner_model *model, size_t index) {
