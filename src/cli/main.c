@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <argp.h>
-#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/heap.h"
 #include "cli/interrupt.h"
 #include "cli/standard.h"
 
@@ -78,13 +78,7 @@ int main(int argc, char **argv) {
     return fg_status_exit_code(FG_ERR_MEMORY);
   }
   fg_interrupt_start();
-  /* Else every thread reserves 64 MiB of address space for itself, which counts where that is
-   * limited. */
-  mallopt(M_ARENA_MAX, 2);
-  /* Memory that is given back to the system after every step is cleared by it for the next. */
-  mallopt(M_TRIM_THRESHOLD, 64 << 20);
-  mallopt(M_TOP_PAD, 1 << 20);
-  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  fg_heap_start();
   if (argc < 2) {
     print_help(stderr);
     return fg_status_exit_code(FG_ERR_USAGE);

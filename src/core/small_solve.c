@@ -7,9 +7,10 @@
 void fg_normal_clear(fg_normal_equations *system, size_t unknowns) {
   system->unknowns = unknowns;
   system->sum_squares = 0;
-  memset(system->right, 0, unknowns * sizeof *system->right);
+  size_t size = (unknowns + 3) / 4 * 4 * sizeof *system->right; /* whole registers of add_nine */
+  memset(system->right, 0, size);
   for (size_t i = 0; i < unknowns; i++)
-    memset(system->matrix[i], 0, unknowns * sizeof *system->matrix[i]);
+    memset(system->matrix[i], 0, size);
 }
 
 static inline __attribute__((always_inline)) void add_equation(fg_normal_equations *system,
@@ -24,19 +25,49 @@ static inline __attribute__((always_inline)) void add_equation(fg_normal_equatio
   system->sum_squares += weight * value * value;
 }
 
-/* The compiler unrolls the loops for known numbers of unknowns: of a profile's fit, the innermost
- * loop of all measuring, and of a parabola's. */
-void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
-  switch (system->unknowns) {
-  case 3:
-    add_equation(system, row, value, weight, 3);
-    break;
-  case 9:
-    add_equation(system, row, value, weight, 9);
-    break;
-  default:
-    add_equation(system, row, value, weight, system->unknowns);
+/* Four numbers of a register. */
+typedef double four __attribute__((vector_size(32), aligned(8)));
+enum { FOURS = FG_NORMAL_ROW_VALUES / 4, ROW_UNKNOWNS = FG_NORMAL_ROW_VALUES - 3 };
+
+/* Sums stay in registers over all rows. Each is added up in the order of the rows, as add_equation
+ * does it. */
+__attribute__((target_clones("avx2", "default"))) static void
+add_nine(fg_normal_equations *system, const fg_normal_row *rows, size_t count) {
+  four sums[ROW_UNKNOWNS][FOURS], right[FOURS];
+  memcpy(right, system->right, sizeof right);
+  for (int i = 0; i < ROW_UNKNOWNS; i++)
+    memcpy(sums[i], system->matrix[i], sizeof sums[i]);
+  for (size_t k = 0; k < count; k++) {
+    const fg_normal_row *row = &rows[k];
+    four values[FOURS];
+    memcpy(values, row->values, sizeof values);
+    for (int i = 0; i < ROW_UNKNOWNS; i++)
+      for (int j = 0; j <= i / 4; j++)
+        sums[i][j] += row->weight * row->values[i] * values[j];
+    for (int j = 0; j < FOURS; j++)
+      right[j] += row->weight * values[j] * row->right;
+    system->sum_squares += row->weight * row->right * row->right;
   }
+  memcpy(system->right, right, sizeof right);
+  for (int i = 0; i < ROW_UNKNOWNS; i++)
+    memcpy(system->matrix[i], sums[i], sizeof sums[i]);
+}
+
+void fg_normal_add_rows(fg_normal_equations *system, const fg_normal_row *rows, size_t count) {
+  if (system->unknowns == ROW_UNKNOWNS) {
+    add_nine(system, rows, count);
+    return;
+  }
+  for (size_t k = 0; k < count; k++)
+    fg_normal_add(system, rows[k].values, rows[k].right, rows[k].weight);
+}
+
+/* The compiler unrolls the loops for a known number of unknowns, a parabola's. */
+void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
+  if (system->unknowns == 3)
+    add_equation(system, row, value, weight, 3);
+  else
+    add_equation(system, row, value, weight, system->unknowns);
 }
 
 /* Lower Cholesky factor of the damped matrix. */

@@ -23,8 +23,9 @@ enum { PARTS = FG_SHADOW_PARTS };
 /* One independent part of the shifts: edges that face the bearing, or, without a part, all. */
 typedef struct shift_part {
   const fg_datum_line *line;
-  int part;       /* -1: all bearings alike */
-  double carried; /* depth at every edge in addition to its own */
+  int part;        /* -1: all bearings alike */
+  fg_point toward; /* middle of the part's bearings, a unit vector */
+  double carried;  /* depth at every edge in addition to its own */
 } shift_part;
 
 static double depth_at(const fg_picture_state *picture, double bearing) {
@@ -43,10 +44,20 @@ static double part_weight(const shift_part *p, double bearing) {
   return off < step ? cos(M_PI / 2 * off / step) : 0;
 }
 
+/* Whether an edge faces none of the part's bearings for certain, without an arc tangent. */
+static bool faces_away(const shift_part *p, fg_point normal) {
+  const double rounding = 1e-6;
+  return p->part >= 0 &&
+         normal.x * p->toward.x + normal.y * p->toward.y < cos(2 * M_PI / PARTS) - rounding;
+}
+
 /* Outward shift of an edge of one side, mm. */
 static double edge_shift(const shift_part *p, const fg_station *s, bool right) {
   const fg_strip *strip = p->line->strip;
-  double way = right ? 1 : -1, bearing = atan2(way * s->normal.y, way * s->normal.x);
+  double way = right ? 1 : -1;
+  fg_point normal = {way * s->normal.x, way * s->normal.y};
+  if (faces_away(p, normal)) return 0;
+  double bearing = atan2(normal.y, normal.x);
   double blur_mm = (right ? strip->blur_right_um : strip->blur_left_um) / 1000;
   double depth = depth_at(&strip->picture, bearing);
   depth = p->part < 0 ? depth : hypot(depth, p->carried);
@@ -73,8 +84,11 @@ void fg_arc_find_shadow(const fg_datum_line *line, const fg_arc *arc, fg_arc_sha
   for (int i = 0; i < FG_PICTURE_BEARINGS; i++)
     p.carried = fmax(p.carried, CARRIED_SHARE * fabs(picture->shadow_at[i]));
   if (picture->findings & FG_PICTURE_UNEVEN_BLUR) p.carried = hypot(p.carried, UNEVEN_DEPTH);
-  for (p.part = -1; p.part < PARTS; p.part++)
+  for (p.part = -1; p.part < PARTS; p.part++) {
+    double middle = p.part * 2 * M_PI / PARTS;
+    p.toward = (fg_point){cos(middle), sin(middle)};
     if (!fg_arc_shift_by(line, arc, line_shift, &p, shadow->shifts[p.part + 1])) return;
+  }
   shadow->count = PARTS + 1;
 }
 

@@ -126,14 +126,22 @@ static void hold_counts(const double *x, double *row) {
 static void build_profile_equations(const fg_edge_tables *tables, const fg_profile_bin *bins,
                                     size_t count, const double *x, size_t unknowns,
                                     fg_normal_equations *system) {
+  enum { ROWS = 32 };
+  fg_normal_row rows[ROWS];
+  size_t held = 0;
+  memset(rows, 0, sizeof rows);
   fg_normal_clear(system, unknowns);
-  double row[UNKNOWNS];
   for (size_t i = 0; i < count; i++) {
     if (bins[i].count <= 0) continue;
-    double value = model_at(tables, x, bins[i].across_px, unknowns, row);
-    if (unknowns > GAMMA) hold_counts(x, row);
-    fg_normal_add(system, row, bins[i].value - value, bins[i].count);
+    fg_normal_row *row = &rows[held++];
+    row->right = bins[i].value - model_at(tables, x, bins[i].across_px, unknowns, row->values);
+    row->weight = bins[i].count;
+    if (unknowns > GAMMA) hold_counts(x, row->values);
+    if (held < ROWS) continue;
+    fg_normal_add_rows(system, rows, held);
+    held = 0;
   }
+  fg_normal_add_rows(system, rows, held);
 }
 
 static bool is_sensible(const double *x) {
@@ -171,28 +179,30 @@ void fg_profile_fit_model(const fg_edge_tables *tables, const fg_profile_bin *bi
                           int free_gamma, fg_profile_fit *fit) {
   size_t unknowns = free_gamma ? UNKNOWNS : GAMMA;
   double x[UNKNOWNS], trial[UNKNOWNS], dx[FG_SMALL_MAX], damping = 1e-4;
-  fg_normal_equations system, next;
+  fg_normal_equations systems[2], *system = &systems[0], *next = &systems[1];
   pack_unknowns(fit, x);
-  build_profile_equations(tables, bins, count, x, unknowns, &system);
+  build_profile_equations(tables, bins, count, x, unknowns, system);
   fit->good = 0;
   for (int i = 0; i < ITERATIONS_MAX && damping < 1e6; i++) {
-    if (!fg_normal_solve(&system, damping, dx, NULL)) {
+    if (!fg_normal_solve(system, damping, dx, NULL)) {
       damping = fmax(damping * 10, 1e-6);
       continue;
     }
     advance_unknowns(x, dx, unknowns, trial);
-    if (is_sensible(trial)) build_profile_equations(tables, bins, count, trial, unknowns, &next);
-    if (!is_sensible(trial) || !(next.sum_squares <= system.sum_squares)) {
+    if (is_sensible(trial)) build_profile_equations(tables, bins, count, trial, unknowns, next);
+    if (!is_sensible(trial) || !(next->sum_squares <= system->sum_squares)) {
       damping *= 10;
       continue;
     }
-    double gain = system.sum_squares - next.sum_squares;
+    double gain = system->sum_squares - next->sum_squares;
+    fg_normal_equations *before = system;
     memcpy(x, trial, sizeof x);
     system = next;
+    next = before;
     damping *= 0.1;
     fit->good = 1;
-    if (gain <= 1e-5 * system.sum_squares) break;
+    if (gain <= 1e-5 * system->sum_squares) break;
   }
   unpack_unknowns(x, fit);
-  finish_profile_fit(bins, count, unknowns, &system, fit);
+  finish_profile_fit(bins, count, unknowns, system, fit);
 }
