@@ -44,7 +44,8 @@ static double part_weight(const shift_part *p, double bearing) {
   return off < step ? cos(M_PI / 2 * off / step) : 0;
 }
 
-/* Whether an edge faces none of the part's bearings for certain, without an arc tangent. */
+/* Returns true where an edge faces none of the part's bearings for certain; saves an arc tangent.
+ */
 static bool faces_away(const shift_part *p, fg_point normal) {
   const double rounding = 1e-6;
   return p->part >= 0 &&

@@ -283,9 +283,13 @@ def rows_of(options):
 
 
 def work_on_all(options, work, fields=FIELDS):
-    """Inputs that the CSV holds are not run again."""
-    if options.fresh and os.path.exists(options.csv):
-        os.remove(options.csv)
+    """Inputs that the CSV holds are not run again; --fresh forgets those of this seed."""
+    if options.fresh:
+        others = [r for r in read_rows(options.csv) if int(r["seed"]) != options.seed]
+        with open(options.csv, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, fields, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(others)
     done = {int(r["case"]) for r in rows_of(options)}
     for index in [i for i in range(options.cases) if i not in done]:
         row = work(index)
@@ -308,7 +312,7 @@ def main():
     parser.add_argument("--csv", default="reports/loop_foreign.csv")
     parser.add_argument("--out", default="reports/loop_foreign.md")
     parser.add_argument("--keep", help="folder for the pictures of wrong and worse inputs")
-    parser.add_argument("--fresh", action="store_true", help="forget the inputs that the CSV has")
+    parser.add_argument("--fresh", action="store_true", help="forget the inputs of this seed that the CSV has")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
     if options.check:

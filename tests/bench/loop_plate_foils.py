@@ -159,7 +159,7 @@ def main():
     parser.add_argument("--csv", default="reports/loop_plate_foils.csv")
     parser.add_argument("--out", default="reports/loop_plate_foils.md")
     parser.add_argument("--unknown", action="store_true", help="the loop is not told the pins' diameters")
-    parser.add_argument("--fresh", action="store_true", help="forget the inputs that the CSV has")
+    parser.add_argument("--fresh", action="store_true", help="forget the inputs of this seed that the CSV has")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
     foreign.work_on_all(options, lambda index: run_case(options, index), FIELDS)

@@ -198,7 +198,7 @@ def main():
     parser.add_argument("--csv")
     parser.add_argument("--out")
     parser.add_argument("--known", action="store_true", help="the design tells the pins' diameters")
-    parser.add_argument("--fresh", action="store_true", help="forget the inputs that the CSV has")
+    parser.add_argument("--fresh", action="store_true", help="forget the inputs of this seed that the CSV has")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
     page = "reports/loop_plate_known" if options.known else "reports/loop_plate_unlisted"

@@ -275,7 +275,7 @@ def main():
     parser.add_argument("--out", help="default: their page")
     parser.add_argument("--kinds", choices=SETS, default="first", help="by when they were invented")
     parser.add_argument("--late", dest="kinds", action="store_const", const="late", help="as --kinds late")
-    parser.add_argument("--fresh", action="store_true", help="forget the inputs that the CSV has")
+    parser.add_argument("--fresh", action="store_true", help="forget the inputs of this seed that the CSV has")
     options = parser.parse_args()
     options.program = os.path.abspath(options.program)
     options.csv, options.out = options.csv or page_of(options.kinds) + ".csv", options.out or page_of(options.kinds) + ".md"

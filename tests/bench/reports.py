@@ -5,8 +5,9 @@
 usage: reports.py [--again] [NAME...] | --list | --check
 
 NAME is a part of a page's name; without one, every page is made. A page that stands in reports/made.csv with the present commit is not
-made again (--again: it is): an interrupted run goes on where it ended. Commands of a section whose numbers are times run alone, the
-others in pairs. What a command says goes to build/reports/. --list writes the columns `made`, `figure` and `goal` anew; --check ends with 1
+made again (--again: it is): an interrupted run goes on where it ended. So do benchmarks that keep a row for each input (those with an
+option --fresh), where the run that was interrupted had the same commit; else they forget the rows of the program before. Commands of a
+section whose numbers are times run alone, the others in pairs. What a command says goes to build/reports/. --list writes the columns `made`, `figure` and `goal` anew; --check ends with 1
 where a page is old by its sources and the column does not say so, where a row of reports/figures.csv finds nothing in its page, and where
 the figure in the list is not the page's.
 """
@@ -136,17 +137,41 @@ def listed(text, made, figures):
     return '\n'.join(lines) + '\n'
 
 
-def make(page):
+def forgets_rows(command):
+    """True where its benchmark keeps the rows of a run before, unless it is told not to."""
+    script = next((word for word in command.split() if word.endswith('.py')), None)
+    if not script or '--fresh' in command:
+        return False
+    told = subprocess.run(['python3', script, '--help'], cwd=ROOT, capture_output=True, text=True, check=False)
+    return '--fresh' in told.stdout
+
+
+def begins_anew(log, commit):
+    """True where no run of this commit was interrupted; from here on there is one."""
+    mark = log + '.begun'
+    if os.path.exists(mark):
+        with open(mark, encoding='utf-8') as stream:
+            if stream.read() == commit:
+                return False
+    with open(mark, 'w', encoding='utf-8') as stream:
+        stream.write(commit)
+    return True
+
+
+def make(page, commit):
     """Runs a page's commands; minutes, or None where one failed."""
     log = os.path.join(LOGS, page.name.replace('/', '_') + '.log')
-    start = time.monotonic()
+    start, anew = time.monotonic(), begins_anew(log, commit)
     with open(log, 'w', encoding='utf-8') as stream:
         for command in page.commands:
             if command.split()[0].endswith('.py'):
                 command = 'python3 ' + command
+            if anew and forgets_rows(command):
+                command += ' --fresh'
             if subprocess.run(['bash', '-c', command], cwd=ROOT, stdout=stream, stderr=subprocess.STDOUT, check=False).returncode:
                 print('%s: failed, see %s' % (page.name, os.path.relpath(log, ROOT)), flush=True)
                 return None
+    os.remove(log + '.begun')
     minutes = (time.monotonic() - start) / 60
     print('%s: made in %.1f min' % (page.name, minutes), flush=True)
     return minutes
@@ -169,7 +194,7 @@ def make_all(wanted, made, again):
     for alone in (False, True):
         groups = [group for group in todo.values() if group[0].alone == alone]
         with concurrent.futures.ThreadPoolExecutor(1 if alone else 2) as pool:
-            work = {pool.submit(make, group[0]): group for group in groups}
+            work = {pool.submit(make, group[0], commit): group for group in groups}
             for done in concurrent.futures.as_completed(work):
                 minutes = done.result()
                 failed += minutes is None

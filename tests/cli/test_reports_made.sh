@@ -33,8 +33,18 @@ Rooms: page.
 |---|---|---|
 | [pages.md](pages.md) | pages \| pictures | `sh count.sh pages` |
 | [broken.md](broken.md) | nothing | `sh count.sh broken`, `false` |
+| [rows.md](rows.md) | inputs | `/usr/bin/python3 keeps.py --cases 9` |
 R
 printf 'echo $1 >>made_here\n' >count.sh
+cat >keeps.py <<'P' # keeps rows, and is interrupted once
+import os, sys
+if "--help" in sys.argv:
+    print("--fresh")
+else:
+    with open("asked", "a") as stream:
+        print(*sys.argv[1:], file=stream)
+    sys.exit(open("asked").read().count("cases") == 1)
+P
 git -c init.defaultBranch=main init -q . && git config user.email a@b && git config user.name a
 save() { git add -A && git commit -qm "$1"; }
 save first
@@ -51,6 +61,10 @@ reports pages >said && grep -q "^pages.md: is of $first" said || fail "a page is
 reports broken >said && fail "a command that fails is no error"
 grep -q '^broken.md: failed, see build/reports/broken.md.log' said || fail "a command that fails: $(cat said)"
 reports nothing 2>said && fail "a page that nobody lists"
+reports rows >said && fail "an interrupted benchmark is no error"
+reports rows >said || fail "a benchmark that goes on: $(cat said)"
+reports --again rows >said || fail "a benchmark made again: $(cat said)"
+[ "$(paste -sd, asked)" = "--cases 9 --fresh,--cases 9,--cases 9 --fresh" ] || fail "rows of other runs: $(cat asked)"
 save made
 
 reports --check || fail "fresh pages are called old"
