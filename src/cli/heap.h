@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How the C library takes memory from the system. */
+/* Memory that the C library takes from the system. */
 #ifndef FG_CLI_HEAP_H
 #define FG_CLI_HEAP_H
 
