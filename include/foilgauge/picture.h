@@ -81,6 +81,9 @@ typedef struct fg_picture_words {
 /* Ends with a row whose name is NULL. */
 const fg_picture_words *fg_picture_finding_words(void);
 
+/* Returns the finding for which a scan is no source of its scanner's model; NULL: none. */
+const fg_picture_words *fg_picture_spoils_model(unsigned findings);
+
 /* One member of the state, for JSON, page and terminal. */
 typedef struct fg_picture_member {
   const char *name, *unit, *words;

@@ -382,20 +382,13 @@ static fg_status check_readable(fg_context *ctx, const fg_scanner_model *model) 
                  inner.message);
 }
 
-/* Distortions that no model describes would be applied to every scan. Rows that jump are allowed: a
- * step of the carriage is an effect that the loop finds. So is a profile that no tone curve
- * explains: it is the same for all edges, and known diameters determine its level. The blocks of a
- * JPEG move edges at random, which their scatter tells, and all of them by as much, which is in
- * their level. */
 fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *m) {
-  const unsigned spoiling = FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW;
-  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
-    if (m->picture.findings & words->finding & spoiling)
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "no model is written: %.120s: %s: %s A model of it would carry that to every "
-                     "scan. %s",
-                     m->scan, words->name, words->meaning, words->cure);
-  return FG_OK;
+  const fg_picture_words *words = fg_picture_spoils_model(m->picture.findings);
+  if (!words) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "no model is written: %.120s: %s: %s A model of it would carry that to every "
+                 "scan. %s",
+                 m->scan, words->name, words->meaning, words->cure);
 }
 
 fg_status fg_scanner_model_write(fg_context *ctx, const fg_scanner_model *model,

@@ -32,6 +32,15 @@ told plate.txt --form discs plate.png
 grep -q 'next: Correct the scanner.*every scan of this scanner' plate.txt || fail "a scale: $(grep next: plate.txt)"
 grep -Eq 'disc 1: D [0-9.]+ -> [0-9.]+ \+- [0-9.]+ mm, rms ' plate.txt || fail "discs without U: $(grep 'disc 1' plate.txt)"
 
+# Where no model would be written of the picture, none is advised.
+render_foil whole 3 -90 '{"id":"scan.carriage_ripple","amplitude_um":8,"period_mm":5}' 2400
+sed 's/"blur_px"/"tone_curve":[[0,0],[48,0],[255,255]],"blur_px"/' whole.json >clipped.json
+"$renderer" render clipped.json -o clipped.png || fail "render a foil whose dark counts are cut off"
+told clipped.txt clipped.png
+grep -q 'next: Scan again.*(clipped_levels)' clipped.txt || fail "clipped counts: $(grep next: clipped.txt)"
+"$program" loop clipped.png --model-out no.json -o clipped.out 2>said && fail "a model of clipped counts"
+grep -q 'no model is written: clipped.png: clipped_levels' said || fail "clipped counts: $(cat said)"
+
 render_foil jump 3 -90 '{"id":"scan.row_step","amplitude_um":12,"y_mm":9}' 2400
 told jump.txt jump.png --without scan.row_step
 grep -q 'state of the picture: row_jumps' jump.txt && grep -q '^unattributed' jump.txt || fail "rows that jump: $(cat jump.txt)"

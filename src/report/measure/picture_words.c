@@ -153,6 +153,18 @@ const fg_picture_words *fg_picture_finding_words(void) {
   return findings;
 }
 
+/* Distortions that no model describes would be applied to every scan. Rows that jump are allowed: a
+ * step of the carriage is an effect that the loop finds. So is a profile that no tone curve
+ * explains: it is the same for all edges, and known diameters determine its level. The blocks of a
+ * JPEG move edges at random, which their scatter tells, and all of them by as much, which is in
+ * their level. */
+const fg_picture_words *fg_picture_spoils_model(unsigned found) {
+  const unsigned spoiling = FG_PICTURE_CLIPPED | FG_PICTURE_FEW_LEVELS | FG_PICTURE_SHADOW;
+  for (const fg_picture_words *words = findings; words->name; words++)
+    if (words->finding & found & spoiling) return words;
+  return NULL;
+}
+
 const fg_picture_member *fg_picture_members(void) {
   return members;
 }

@@ -39,6 +39,14 @@ static sources find_sources(const fg_scan_result *result) {
   return found;
 }
 
+/* Returns the finding for which one of the scans is no source of a model; NULL: none. */
+static const fg_picture_words *find_spoiling(const fg_scan_result *result) {
+  const fg_picture_words *words = NULL;
+  for (size_t i = 0; i < result->scans && !words; i++)
+    words = fg_picture_spoils_model(result->scan[i].before->picture.findings);
+  return words;
+}
+
 static bool knows_diameters(const fg_scan_result *result) {
   return result->scans && result->scan[0].before->design.discs.count > 0;
 }
@@ -83,6 +91,13 @@ static fg_status correct_scanner(fg_context *ctx, const fg_scan_result *result, 
         "Scan again without a pause (a smaller window, a lower resolution), and run the loop on "
         "that scan: the rows of this picture jump, as where the carriage stops. Other scans do not "
         "share that, so write no model of the scanner from it.");
+  const fg_picture_words *spoiling = find_spoiling(result);
+  if (spoiling)
+    return fg_text_print(ctx, words,
+                         "Scan again, and run the loop on that scan: a model of this picture would "
+                         "carry what spoils "
+                         "it to every scan (%s). %s",
+                         spoiling->name, spoiling->cure);
   FG_TRY(fg_text_print(
       ctx, words,
       "Correct the scanner: what was found goes with the glass%s, so every scan of this scanner "
