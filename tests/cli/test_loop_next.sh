@@ -32,7 +32,7 @@ told plate.txt --form discs plate.png
 grep -q 'next: Correct the scanner.*every scan of this scanner' plate.txt || fail "a scale: $(grep next: plate.txt)"
 grep -Eq 'disc 1: D [0-9.]+ -> [0-9.]+ \+- [0-9.]+ mm, rms ' plate.txt || fail "discs without U: $(grep 'disc 1' plate.txt)"
 
-# Where no model would be written of the picture, none is advised.
+# No model is advised of a picture of which none would be written.
 render_foil whole 3 -90 '{"id":"scan.carriage_ripple","amplitude_um":8,"period_mm":5}' 2400
 sed 's/"blur_px"/"tone_curve":[[0,0],[48,0],[255,255]],"blur_px"/' whole.json >clipped.json
 "$renderer" render clipped.json -o clipped.png || fail "render a foil whose dark counts are cut off"
