@@ -204,8 +204,11 @@ static void write_runs(const page *p, const fg_trend_run *runs, size_t count, si
 static void write_ratio(FILE *out, const char *name, const fg_ratio *ratio, const char *words) {
   if (!isfinite(ratio->value)) return;
   char text[80];
-  snprintf(text, sizeof text, "%.2f<small>%.2f to %.2f</small>", ratio->value, ratio->low,
-           ratio->high);
+  if (isfinite(ratio->low) && isfinite(ratio->high))
+    snprintf(text, sizeof text, "%.2f<small>%.2f to %.2f</small>", ratio->value, ratio->low,
+             ratio->high);
+  else
+    snprintf(text, sizeof text, "%.2f", ratio->value);
   fg_html_tile(out, &(fg_tile){name, .text = text, .small = words});
 }
 
@@ -285,6 +288,11 @@ static void write_capability(const page *p) {
           capability->normal ? ""
                              : " The values are not normally distributed: Cp and Cpk say less "
                                "of how many will be beyond.");
+  if (!isfinite(capability->pk.low))
+    fputs(
+        "<p class=\"note\">Ppk and Cpk have no interval: nothing is known of the scanner's scale, "
+        "whose error moves all foils alike. Calibrate it.</p>\n",
+        out);
   write_chance_signals(p);
 }
 

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "foilgauge/traceability.h"
+#include "quantity/quantity_rows.h"
 #include "station/cause_keep.h"
 
 /* Values as they are read: one more of the point before, or the first of another. */
@@ -53,14 +55,14 @@ static void bind(fg_query *query, int64_t quantity, const fg_trend_choice *choic
 
 /* A foil that is scanned again is no further foil: its newest scan counts. */
 static const char of_foils[] =
-    "SELECT foils.id, foils.id, value FROM foils CROSS JOIN measured ON measured.foil = foils.id"
+    "SELECT foils.id, foils.id, value, u FROM foils CROSS JOIN measured ON measured.foil = foils.id"
     " WHERE" CHOSEN " AND" NAMED " AND" FG_NEWEST_SCAN_OF_FOIL " ORDER BY foils.id, bump";
 /* A lot's values are the means of its foils, of all scans that show a foil: it was made once. Lots
  * come in the order of their first foil. */
 static const char of_lots[] =
     "WITH mean AS (SELECT measured.foil AS foil, avg(value) AS value FROM measured WHERE" CHOSEN
     " GROUP BY measured.foil), first AS (SELECT lot, min(id) AS id FROM foils GROUP BY lot)"
-    " SELECT first.id, first.id, avg(mean.value) FROM mean JOIN foils ON foils.id = mean.foil"
+    " SELECT first.id, first.id, avg(mean.value), NULL FROM mean JOIN foils ON foils.id = mean.foil"
     " JOIN first ON first.lot = foils.lot WHERE" NAMED
     " GROUP BY first.id, CASE foils.serial WHEN '' THEN mean.foil ELSE foils.serial END"
     " ORDER BY first.id, min(mean.foil)";
@@ -74,9 +76,13 @@ static fg_status read_values(fg_context *ctx, sqlite3 *reader, fg_trend *trend) 
   FG_TRY(fg_trend_find_quantity(ctx, reader, choice, &quantity));
   fg_query_begin(reader, choice->by_lots ? of_lots : of_foils, &query);
   bind(&query, quantity, choice);
-  while (status == FG_OK && fg_query_row(&query))
+  trend->u_shared = NAN;
+  while (status == FG_OK && fg_query_row(&query)) {
+    if (!fg_query_is_null(&query, 3))
+      trend->u_shared = fmin(trend->u_shared, fg_query_get_number(&query, 3));
     status = add_value(ctx, trend, &at, fg_query_get_integer(&query, 0),
                        fg_query_get_integer(&query, 1), fg_query_get_number(&query, 2));
+  }
   fg_status ended = fg_query_end(ctx, &query, "reading the values");
   trend->quantity.count = at.values;
   trend->count = trend->total = at.points;
@@ -137,11 +143,16 @@ static fg_status chart_lots(unsigned rules, fg_trend *trend) {
   return FG_OK;
 }
 
-/* Judges capability; too few values have none, which is no error. */
-static void judge_trend(const fg_lot_settings *settings, size_t points, fg_lot_quantity *quantity) {
+/* Judges capability; too few values have none, which is no error. The error that all values share
+ * is part of each one's, so no larger than the smallest. */
+static void judge_trend(const fg_lot_settings *settings, fg_trend *trend) {
   fg_context unused;
-  if (fg_lot_judge_capability(&unused, settings->confidence, points, quantity) != FG_OK)
+  fg_lot_quantity *quantity = &trend->quantity;
+  bool known = fg_design_may_judge(&settings->design), has_u = fg_quantity_has_u(quantity->row);
+  if (fg_lot_judge_capability(&unused, settings->confidence, trend->count, quantity) != FG_OK)
     quantity->has_capability = false;
+  double u = known ? trend->u_shared : NAN;
+  fg_lot_widen_capability(settings->confidence, has_u ? u : 0, quantity);
 }
 
 static fg_status find_shifts(fg_context *ctx, const fg_station_request *request, sqlite3 *reader,
@@ -186,8 +197,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
   if (!trend->choice->taken_out) shift_values(trend, 1);
   /* Between levels of a cause capability would be that of no state of the process. */
   trend->mixed = fg_trend_mixes_recipes(reader, trend);
-  if (trend->quantity.stable && !trend->shift && !trend->mixed)
-    judge_trend(settings, trend->count, &trend->quantity);
+  if (trend->quantity.stable && !trend->shift && !trend->mixed) judge_trend(settings, trend);
   return FG_OK;
 }
 

@@ -11,6 +11,7 @@
 typedef struct fg_trend {
   const fg_trend_choice *choice;
   fg_lot_quantity quantity; /* values and chart; `size` is that of each point */
+  double u_shared;          /* bound of the error that all values share: their smallest u */
   int64_t *foil;            /* of each point: the foil, or the lot's first; owned */
   size_t before, count, total, first, last;
   bool mixed;             /* foils of more than one recipe: no tolerance is that of all */

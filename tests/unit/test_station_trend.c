@@ -42,6 +42,28 @@ static void a_signal_that_chance_explains_withholds_nothing(void **state) {
   assert_has_not(page, "<dt>Cpk</dt>");
 }
 
+/* The lower end of Ppk's interval. */
+static double low_of_ppk(const char *page) {
+  const char *at = strstr(page, "<dt>Ppk</dt>");
+  assert_non_null(at);
+  at = strstr(at, "<small>");
+  assert_non_null(at);
+  return strtod(at + strlen("<small>"), NULL);
+}
+
+static void the_error_that_all_foils_share_is_in_the_interval(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 40, "L1", 3.4);
+  double narrow = low_of_ppk(get(f, "/trends", "", 200));
+  run_sql(f, "UPDATE measured SET u = 0.05");
+  double wide = low_of_ppk(get(f, "/trends", "", 200));
+  assert_true(narrow > 1 && wide < narrow - 1);
+  f->settings.lot.design.calibration.not_needed[0] = '\0';
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "Ppk and Cpk have no interval: nothing is known of the scanner's scale");
+  assert_has_not(page, "nan");
+}
+
 static void too_few_foils_have_none(void **state) {
   fixture *f = *state;
   assert_has(get(f, "/trends", "", 200), "0 foils with this quantity: a chart needs two");
@@ -388,6 +410,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       TEST(a_stable_process_has_a_capability),
       TEST(a_signal_that_chance_explains_withholds_nothing),
+      TEST(the_error_that_all_foils_share_is_in_the_interval),
       TEST(too_few_foils_have_none),
       TEST(a_shift_is_told_since_its_first_foil),
       TEST(another_setup_is_marked_where_it_began),

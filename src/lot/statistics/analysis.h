@@ -414,6 +414,10 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                                 fg_lot_quantity *quantity);
 fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, size_t foils,
                                   fg_lot_quantity *quantity);
+/* Widens the intervals of Ppk and Cpk by the error that all values share: the scatter of foils does
+ * not show it, and it moves their mean against the limits. u: its standard uncertainty; NaN: it has
+ * no bound. */
+void fg_lot_widen_capability(double confidence, double u, fg_lot_quantity *quantity);
 /* Finds causes of the charts' signals, and the state of the process as a whole. */
 fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_analyse_dies(fg_lot_analysis *analysis);

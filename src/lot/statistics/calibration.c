@@ -144,21 +144,22 @@ static void widen_ratio(double reach, const fg_ratio *centred, fg_ratio *ratio) 
   ratio->high = bounded ? fmin(high, fmax(ratio->high, centred->high)) : high;
 }
 
-/* Widens the intervals of Ppk and Cpk by the error that all values share: the scatter of foils does
- * not show it, and it moves their mean against the limits. Where nothing is known of the scanner's
- * scale, that error has no bound. */
-static void widen_capability(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
+void fg_lot_widen_capability(double confidence, double u, fg_lot_quantity *quantity) {
   fg_capability *c = &quantity->capability;
   if (!quantity->has_capability) return;
-  double confidence = settings->confidence > 0 ? settings->confidence : 0.95;
-  double u = isfinite(quantity->mean_u.u) ? quantity->mean_u.u : 0;
-  bool known = fg_design_may_judge(&settings->design) || !fg_quantity_has_u(quantity->row);
-  double z = fg_distribution_normal_quantile((1 + confidence) / 2);
-  double reach = known ? z * u / (3 * c->sd) : NAN;
+  double z = fg_distribution_normal_quantile((1 + (confidence > 0 ? confidence : 0.95)) / 2);
+  double reach = z * u / (3 * c->sd);
   bool two_limits = isfinite(c->p.value);
   double sigmas = two_limits ? c->c.value / c->p.value : c->ck.value / c->pk.value;
   widen_ratio(reach, &c->p, &c->pk);
   widen_ratio(reach * sigmas, &c->c, &c->ck);
+}
+
+/* Where nothing is known of the scanner's scale, the error that all values share has no bound. */
+static void widen_by_mean(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
+  bool known = fg_design_may_judge(&settings->design) || !fg_quantity_has_u(quantity->row);
+  double u = isfinite(quantity->mean_u.u) ? quantity->mean_u.u : 0;
+  fg_lot_widen_capability(settings->confidence, known ? u : NAN, quantity);
 }
 
 void fg_lot_find_mean_u(fg_lot_analysis *analysis) {
@@ -173,7 +174,7 @@ void fg_lot_find_mean_u(fg_lot_analysis *analysis) {
   for (size_t k = 0; k < all.count; k++)
     all.reading[k].quantity->mean_u = combine_sums(&all.reading[k].all);
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    widen_capability(&analysis->lot->settings, &analysis->quantities[i]);
+    widen_by_mean(&analysis->lot->settings, &analysis->quantities[i]);
 }
 
 /* Returns the change of ln K by one standard deviation of a source. */
