@@ -155,7 +155,7 @@ void fg_lot_widen_capability(double confidence, double u, fg_lot_quantity *quant
   widen_ratio(reach * sigmas, &c->c, &c->ck);
 }
 
-/* Where nothing is known of the scanner's scale, the error that all values share has no bound. */
+/* The error that all values share has no bound where nothing is known of the scanner's scale. */
 static void widen_by_mean(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
   bool known = fg_design_may_judge(&settings->design) || !fg_quantity_has_u(quantity->row);
   double u = isfinite(quantity->mean_u.u) ? quantity->mean_u.u : 0;
