@@ -146,8 +146,8 @@ def ask(program, text, column, options):
             file.write(text)
         done = subprocess.run([program, "loop", "--table", path, "--response", "error_um", "--model", f"1 + {column}",
                                *options, "-o", "-"], capture_output=True, text=True)
-    if done.returncode > 2 or not done.stdout:
-        sys.exit(f"exit code {done.returncode}: {done.stderr.strip()}")
+    if done.returncode not in (0, 2, 3) or not done.stdout:  # 3: suspected
+        raise RuntimeError(f"exit code {done.returncode}: {done.stderr.strip()}")
     return json.loads(done.stdout)
 
 
