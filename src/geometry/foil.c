@@ -245,7 +245,7 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   if (layout->land_count < 3) foil->flags |= FG_FOIL_FEW_LANDS;
   bool deviates;
   FG_TRY(fg_land_deviation_find(ctx, layout, &deviates));
-  if (deviates) foil->flags |= FG_FOIL_LAND_DEVIATES;
+  if (deviates || layout->land_displaced) foil->flags |= FG_FOIL_LAND_DEVIATES;
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 
