@@ -13,6 +13,7 @@
 #include "geometry/arc_foil.h"
 #include "geometry/bump_places.h"
 #include "geometry/defects.h"
+#include "geometry/fillet_deviation.h"
 #include "geometry/foil_kind.h"
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
@@ -243,9 +244,10 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   flag_mixed_bumps(foil);
   find_rotation(foil);
   if (layout->land_count < 3) foil->flags |= FG_FOIL_FEW_LANDS;
-  bool deviates;
-  FG_TRY(fg_land_deviation_find(ctx, layout, &deviates));
-  if (deviates) foil->flags |= FG_FOIL_LAND_DEVIATES;
+  bool land, fillet;
+  FG_TRY(fg_land_deviation_find(ctx, layout, &land));
+  FG_TRY(fg_fillet_deviation_find(ctx, design, layout, &fillet));
+  if (land || fillet || layout->land_displaced) foil->flags |= FG_FOIL_LAND_DEVIATES;
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 

@@ -8,12 +8,15 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/select.h"
+#include "core/small_solve.h"
 
 enum { GROW_ROUNDS = 3, LAND_POINTS_MIN = 24, GAPS_MAX = 512 };
 /* Limits of an arc's end inside and outside the turning point, and its place beyond them. */
 #define END_EARLY_MM  0.30
 #define END_LATE_MM   0.12
 #define END_INSIDE_MM 0.12
+/* Max distance of a whole land from the circle of the others. */
+#define LAND_OFF_MM 0.05
 /* A gap that is longer than this many usual ones has an empty place. */
 #define LONG_GAP 1.5
 
@@ -81,31 +84,145 @@ static fg_status start_overall(fg_context *ctx, const fg_design *design, fg_layo
   return fg_arc_estimate(ctx, &layout->line, &layout->overall);
 }
 
+/* Max distance from the circle at which a station is near it. */
+static double near_limit(const fg_layout *layout) {
+  return fmax(6 * layout->overall.scatter_mm, 0.003);
+}
+
+/* The longest stretch of a gap near the circle. */
+static fg_range find_near(const fg_layout *layout, fg_range gap) {
+  fg_range best = {0, 0}, open = {0, 0};
+  double limit = near_limit(layout);
+  bool inside = false;
+  for (size_t k = gap.first; k <= gap.last; k++) {
+    double r = fg_arc_residual(&layout->line, &layout->overall.circle, k);
+    bool near = isfinite(r) && fabs(r) < limit;
+    if (near && !inside) open.first = k;
+    if (near) open.last = k;
+    if (near && open.last - open.first > best.last - best.first) best = open;
+    inside = near || (inside && !isfinite(r));
+  }
+  return best;
+}
+
+/* The longest stretch of a gap that runs along the circle at some distance. */
+static fg_range find_along(const fg_layout *layout, fg_range gap, double *distance_mm) {
+  fg_range best = {0, 0};
+  double limit = near_limit(layout);
+  for (size_t first = gap.first; first + (best.last - best.first) < gap.last; first++) {
+    double min = INFINITY, max = -INFINITY;
+    for (size_t k = first; k <= gap.last; k++) {
+      double r = fg_arc_residual(&layout->line, &layout->overall.circle, k);
+      if (k == first && !isfinite(r)) break;
+      if (!isfinite(r)) continue;
+      min = fmin(min, r);
+      max = fmax(max, r);
+      if (max - min > 2 * limit) break;
+      if (fabs(max + min) > 2 * LAND_OFF_MM || k - first <= best.last - best.first) continue;
+      best = (fg_range){first, k};
+      *distance_mm = 0.5 * (min + max);
+    }
+  }
+  return best;
+}
+
+/* Grows a land within `seen`, a stretch of a gap at a distance from the circle. False: on a badly
+ * bent strip the core may have grown away from the land altogether. */
+static bool grow_land(const fg_layout *layout, fg_range gap, fg_range seen, double distance_mm,
+                      fg_range *land) {
+  fg_arc shifted = layout->overall;
+  shifted.circle.radius += distance_mm;
+  *land = middle_part(seen, 0.7);
+  fg_arc_grow(&layout->line, &shifted, -1, gap, land);
+  if (land->first < seen.first) land->first = seen.first;
+  if (land->last > seen.last) land->last = seen.last;
+  return land->last > land->first;
+}
+
+/* Median number of stations of the lands found; 0 without any. */
+static size_t usual_land(const fg_layout *layout) {
+  double lengths[GAPS_MAX];
+  size_t n = 0;
+  for (size_t i = 0; i <= layout->turning.bump_count && n < GAPS_MAX; i++)
+    if (layout->lands[i].last)
+      lengths[n++] = (double)(layout->lands[i].last - layout->lands[i].first);
+  return n ? (size_t)fg_select(lengths, n, n / 2) : 0;
+}
+
+/* Terms of a land's distance from the circle by its direction: moves of the circle, and an oval. */
+enum { OVAL_TERMS = 5 };
+static void oval_row(const fg_layout *layout, fg_range land, double row[OVAL_TERMS]) {
+  const fg_circle *circle = &layout->overall.circle;
+  fg_point p = fg_strip_middle(layout->line.strip, (land.first + land.last) / 2);
+  double psi = atan2(p.y - circle->y, p.x - circle->x);
+  const double terms[OVAL_TERMS] = {1, cos(psi), sin(psi), cos(2 * psi), sin(2 * psi)};
+  memcpy(row, terms, sizeof terms);
+}
+
+static double mean_distance(const fg_layout *layout, fg_range land) {
+  double sum = 0, n = 0;
+  for (size_t k = land.first; k <= land.last; k++) {
+    double r = fg_arc_residual(&layout->line, &layout->overall.circle, k);
+    if (!isfinite(r)) continue;
+    sum += r;
+    n++;
+  }
+  return sum / n;
+}
+
+/* Fits an oval to the mean distances of the lands found. */
+static bool fit_oval(const fg_layout *layout, double oval[FG_SMALL_MAX]) {
+  fg_normal_equations system;
+  size_t lands = 0;
+  fg_normal_clear(&system, OVAL_TERMS);
+  for (size_t i = 0; i <= layout->turning.bump_count; i++) {
+    double row[OVAL_TERMS], distance_mm;
+    if (!layout->lands[i].last) continue;
+    distance_mm = mean_distance(layout, layout->lands[i]);
+    if (!isfinite(distance_mm)) continue;
+    oval_row(layout, layout->lands[i], row);
+    fg_normal_add(&system, row, distance_mm, 1);
+    lands++;
+  }
+  return lands > OVAL_TERMS && fg_normal_solve(&system, 0, oval, NULL);
+}
+
+/* Finds a land that lies away from the circle of the others as a whole. Of an oval foil it belongs
+ * to the circle, which is the one through the part as it is; else the line has jumped. */
+static void find_displaced(fg_layout *layout, const double *oval, size_t usual, size_t i) {
+  fg_range *land = &layout->lands[i], gap = gap_bounds(layout, i), found;
+  double distance_mm = 0, row[OVAL_TERMS], expected_mm = 0;
+  if (2 * (land->last - land->first) >= usual) return;
+  fg_range along = find_along(layout, gap, &distance_mm);
+  if (2 * (along.last - along.first) < usual) return;
+  if (!grow_land(layout, gap, along, distance_mm, &found) || 2 * (found.last - found.first) < usual)
+    return;
+  oval_row(layout, found, row);
+  for (int k = 0; oval && k < OVAL_TERMS; k++)
+    expected_mm += oval[k] * row[k];
+  if (fabs(mean_distance(layout, found) - expected_mm) < near_limit(layout))
+    *land = found;
+  else
+    layout->land_displaced = true;
+}
+
 /* Regrows every gap's land from its stations nearest to the circle. End gaps have lip or free end
  * on one side. */
 static void regrow_lands(fg_layout *layout) {
-  const fg_circle *circle = &layout->overall.circle;
-  size_t n = 0;
-  for (size_t i = 0; i <= layout->turning.bump_count; i++) {
-    fg_range gap = gap_bounds(layout, i), best = {0, 0}, open = {0, 0};
-    double limit = fmax(6 * layout->overall.scatter_mm, 0.003);
-    bool inside = false;
-    for (size_t k = gap.first; k <= gap.last; k++) {
-      double r = fg_arc_residual(&layout->line, circle, k);
-      bool near = isfinite(r) && fabs(r) < limit;
-      if (near && !inside) open.first = k;
-      if (near) open.last = k;
-      if (near && open.last - open.first > best.last - best.first) best = open;
-      inside = near || (inside && !isfinite(r));
-    }
-    if (best.last - best.first < LAND_POINTS_MIN / 2) continue;
-    fg_range grown = middle_part(best, 0.7);
-    fg_arc_grow(&layout->line, &layout->overall, -1, gap, &grown);
-    if (grown.first < best.first) grown.first = best.first;
-    if (grown.last > best.last) grown.last = best.last;
-    /* On a badly bent strip the core may have grown away from the land altogether. */
-    if (grown.last <= grown.first) continue;
-    layout->lands[n++] = grown;
+  size_t n = 0, gaps = layout->turning.bump_count + 1;
+  for (size_t i = 0; i < gaps; i++) {
+    fg_range gap = gap_bounds(layout, i), near = find_near(layout, gap);
+    bool seen = near.last - near.first >= LAND_POINTS_MIN / 2;
+    if (!seen || !grow_land(layout, gap, near, 0, &layout->lands[i]))
+      layout->lands[i] = (fg_range){0, 0};
+  }
+  size_t usual = usual_land(layout);
+  double oval[FG_SMALL_MAX];
+  bool is_oval = fit_oval(layout, oval);
+  layout->land_displaced = false;
+  for (size_t i = 0; i < gaps; i++) {
+    find_displaced(layout, is_oval ? oval : NULL, usual, i);
+    if (layout->lands[i].last) layout->lands[n++] = layout->lands[i];
   }
   layout->land_count = n;
   layout->overall.ranges = layout->lands;

@@ -15,7 +15,8 @@ typedef struct fg_layout {
   bool *fitted;          /* true when the bump's circle was found; owned */
   fg_range *lands;       /* owned */
   size_t land_count;
-  fg_arc overall; /* over the lands */
+  bool land_displaced; /* the land of a gap lies beside the circle, and is in no fit */
+  fg_arc overall;      /* over the lands */
 } fg_layout;
 
 /* Finds and fits all arcs. `error` gets words (NULL: none) when the foil cannot be laid out:
