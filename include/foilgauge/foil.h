@@ -63,7 +63,7 @@ typedef enum fg_foil_flag {
   /* "thickness_contradicts": the scan's thickness is not the one stated as measured */
   FG_FOIL_THICKNESS_CONTRADICTS = 1u << 26,
   FG_FOIL_OTHER_THICKNESS = 1u << 27, /* "other_thickness": far from the design's */
-  FG_FOIL_LAND_DEVIATES = 1u << 28,   /* "land_deviates": a dent or a crease in a land */
+  FG_FOIL_LAND_DEVIATES = 1u << 28,   /* "land_deviates": a dent, a crease or a jump in a land */
 } fg_foil_flag;
 
 typedef enum fg_bump_flag {

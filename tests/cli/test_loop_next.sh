@@ -46,6 +46,9 @@ told jump.txt jump.png --without scan.row_step
 grep -q 'state of the picture: row_jumps' jump.txt && grep -q '^unattributed' jump.txt || fail "rows that jump: $(cat jump.txt)"
 grep -q 'next: Scan again without a pause' jump.txt || fail "rows that jump: $(grep next: jump.txt)"
 grep -q 'every scan of this scanner' jump.txt && fail "lost rows are taken for every scan's"
+render_foil cut 3 -90 '{"id":"scan.row_step","amplitude_um":21,"y_mm":9}' 1200
+told cut.txt cut.png
+grep -q 'next: Scan again.*land_deviates' cut.txt || fail "a bump that a lost row cuts: $(grep next: cut.txt)"
 "$program" loop jump.png --html jump.html -o jump.out || fail "a page of lost rows"
 [ "$(grep -o '<text class="bump"[^>]*>1<' jump.html | wc -l)" = 2 ] ||
   fail "bump 1 has $(grep -o '<text class="bump"[^>]*>1<' jump.html | wc -l) numbers in the drawings before and after"

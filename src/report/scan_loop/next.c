@@ -47,6 +47,13 @@ static const fg_picture_words *find_spoiling(const fg_scan_result *result) {
   return words;
 }
 
+static bool has_deviating_land(const fg_scan_result *result) {
+  for (size_t i = 0; i < result->scans; i++)
+    for (size_t k = 0; k < result->scan[i].before->foil_count; k++)
+      if (result->scan[i].before->foils[k].flags & FG_FOIL_LAND_DEVIATES) return true;
+  return false;
+}
+
 static bool knows_diameters(const fg_scan_result *result) {
   return result->scans && result->scan[0].before->design.discs.count > 0;
 }
@@ -119,6 +126,10 @@ static const char *for_part(const fg_scan_result *result, sources found) {
   if (found.width)
     return "Look at the sheet: its thickness changes along the strip; radii and heights of the "
            "midline stand.";
+  if (has_deviating_land(result))
+    return "Scan again without a pause, and look at the foil: a dent, a crease or rows that jump "
+           "displace a part of it (land_deviates), so the bumps beside it are not measured right; "
+           "the die may be sound.";
   return "Look at the die and the heat treatment: the bumps differ among themselves in a way that "
          "the declared model does not explain; the dimensions stand as measured.";
 }
