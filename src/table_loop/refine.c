@@ -36,11 +36,27 @@ static void neighbours(const fg_loop_problem *problem, const fg_loop_candidate *
   }
 }
 
+/* Longest period of a cycle over that from which it is sought: eight places that close a circle
+ * return after 8/7 of their range, and what is longer is a bend. Without a limit a period doubles
+ * with every round of refinement. */
+#define LONGEST_CYCLE 1.15
+
+static double longest_period(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES], longest = 0;
+  size_t count = candidate->effect->starts(problem, candidate, starts), lowest = 1;
+  for (size_t i = 0; i < count; i++)
+    longest = fmax(longest, starts[i][0]);
+  while (lowest < FG_LOOP_ORDER_MAX && !fg_loop_has_order(candidate, lowest))
+    lowest++;
+  return LONGEST_CYCLE * longest * (double)lowest;
+}
+
 /* Half a cycle of the highest order, over the range, on both sides. On even places the shortest
  * period, two places, stays: near it sine and cosine are collinear, and a beat of large amplitudes
  * follows whatever the neighbours of an alternation do. */
-static void cycle_neighbours(const fg_loop_coordinate *at, const fg_loop_candidate *candidate,
+static void cycle_neighbours(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                              double value, double *low, double *high) {
+  const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
   size_t highest = 1;
   for (size_t k = 1; k <= FG_LOOP_ORDER_MAX; k++)
     if (fg_loop_has_order(candidate, k)) highest = k;
@@ -49,6 +65,7 @@ static void cycle_neighbours(const fg_loop_coordinate *at, const fg_loop_candida
       at->even ? 0.5 * (at->high - at->low) / at->spacing / (double)highest - cycles : cycles;
   *low = value * cycles / (cycles + fmin(half, fmax(room - half, 0)));
   *high = value * cycles / fmax(cycles - (room < half ? 0 : half), cycles / 2);
+  *high = fmax(fmin(*high, longest_period(problem, candidate)), value);
 }
 
 /* One shape of one member of a set; the others are held. */
@@ -150,7 +167,7 @@ static fg_status move_one(fg_context *ctx, moving *m, size_t dimension) {
   FG_TRY(residual_sum_at(ctx, m, &at_start));
   const fg_loop_candidate *candidate = &m->set->candidate[m->member];
   if (candidate->effect->cycle)
-    cycle_neighbours(&m->problem->coordinate[candidate->a], candidate, start, &low, &high);
+    cycle_neighbours(m->problem, candidate, start, &low, &high);
   else
     neighbours(m->problem, candidate, dimension, start, &low, &high);
   low = log(low);

@@ -102,4 +102,29 @@ refuse "no column of numbers" --period z=2
 refuse "tell no order" --period x_mm=1e9
 refuse "too many --period" "${many[@]}"
 [ -e never.json ] && fail "a refused period leaves an output file"
+# A bend over the order of the bumps is no cycle that returns after a thousand of them; a turn over nine bumps is one.
+cat >bends.py <<'P'
+import math, random
+rng = random.Random()
+for name, g in (("valley", lambda b: 4 * ((b - 6) / 3) ** 2 / 3), ("hinge", lambda b: 2 * max(0, b - 6) / 3),
+                ("turn9", lambda b: math.sin(2 * math.pi * b / 9 + 1))):
+    rng.seed(f"x{name}2")
+    with open(name + ".csv", "w") as out:
+        out.write("foil,bump,y\n")
+        for foil in range(13):
+            own = rng.gauss(0, 0.3)
+            for b in range(1, 10):
+                out.write(f"{foil + 1},{b},{own + g(b) + rng.gauss(0, 0.8):.4f}\n")
+P
+python3 bends.py
+for name in valley hinge turn9; do
+  "$program" loop --table $name.csv --response y --model 1 --order bump -o $name.json || fail "$name: exit code"
+  value $name.json "[c['parameters']['period'] for c in r['claims'] if c['id'] == 'table.periodic']" >period || fail "$name: $(cat $name.json)"
+  if [ $name = turn9 ]; then
+    near "period of a turn" "$(tr -d '[]' <period)" 9 0.3
+  else
+    grep -qF '[]' period || fail "a $name returns every $(cat period) bumps"
+  fi
+done
+
 exit $failed
