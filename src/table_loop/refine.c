@@ -37,7 +37,7 @@ static void neighbours(const fg_loop_problem *problem, const fg_loop_candidate *
 }
 
 /* Longest period of a cycle over that from which it is sought: eight places that close a circle
- * return after 8/7 of their range, and what is longer is a bend. Without a limit a period doubles
+ * return after 8/7 of their range, and a longer one is a bend. Without a limit a period doubles
  * with every round of refinement. */
 #define LONGEST_CYCLE 1.15
 
