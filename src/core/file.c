@@ -275,12 +275,17 @@ static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, si
   return FG_OK;
 }
 
+fg_status fg_file_open(fg_context *ctx, const char *path, FILE **stream) {
+  *stream = fopen(path, "rbe");
+  if (*stream) return FG_OK;
+  return fg_fail(ctx, fg_status_of_errno(errno), "%.600s: cannot be opened: %s; %s", path,
+                 strerror(errno), errno == ENOMEM ? "close other programs" : "check the name");
+}
+
 fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char **text) {
+  FILE *stream;
   *text = NULL;
-  FILE *stream = fopen(path, "rbe");
-  if (!stream)
-    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be opened: %s; %s", path,
-                   strerror(errno), errno == ENOMEM ? "close other programs" : "check the name");
+  FG_TRY(fg_file_open(ctx, path, &stream));
   fg_status status = read_stream(ctx, stream, path, cap, text);
   fclose(stream);
   if (status != FG_OK) {
@@ -291,8 +296,8 @@ fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char 
 }
 
 fg_status fg_file_read_token(fg_context *ctx, const char *path, char *token, int size) {
-  FILE *file = fopen(path, "re");
-  if (!file) return fg_fail(ctx, FG_ERR_IO, "%.600s: cannot be opened: %s", path, strerror(errno));
+  FILE *file;
+  FG_TRY(fg_file_open(ctx, path, &file));
   char *line = fgets(token, size, file);
   fclose(file);
   if (!line) return fg_fail(ctx, FG_ERR_DATA, "%.600s: there is no token in it", path);

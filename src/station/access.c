@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "station/access.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,8 +73,8 @@ static fg_status read_users(fg_context *ctx, FILE *file, const char *path, fg_us
 fg_status fg_users_load(fg_context *ctx, const char *path, fg_users *users) {
   *users = (fg_users){.list = NULL};
   if (!path) return FG_OK;
-  FILE *file = fopen(path, "re");
-  if (!file) return fg_fail(ctx, FG_ERR_IO, "%.600s: cannot be opened: %s", path, strerror(errno));
+  FILE *file;
+  FG_TRY(fg_file_open(ctx, path, &file));
   fg_status status = read_users(ctx, file, path, users);
   fclose(file);
   return status;

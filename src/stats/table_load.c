@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/sha256.h"
 #include "foilgauge/table.h"
@@ -17,12 +18,12 @@ static bool is_standard(const char *path) {
 
 /* The whole input, NUL bytes included (the table's reader names their place). */
 static fg_status read_all(fg_context *ctx, const char *path, char **text, size_t *size) {
-  FILE *in = is_standard(path) ? stdin : fopen(path, "rb");
+  FILE *in = stdin;
   size_t capacity = 0, got;
   fg_status status = FG_OK;
   *text = NULL;
   *size = 0;
-  if (!in) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened; is the name right?", path);
+  if (!is_standard(path)) FG_TRY(fg_file_open(ctx, path, &in));
   do {
     FG_TRY_EXIT(fg_memory_reserve(ctx, *size + 65536, 1, &capacity, (void **)text));
     got = fread(*text + *size, 1, capacity - *size, in);
