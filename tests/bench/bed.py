@@ -157,7 +157,7 @@ def table(rows):
 def panel(out, left, title, xs, series, unit):
     """One plot: points joined by lines, axes from 0, the largest values written at their ends."""
     top, width, height = 40, 300, 200
-    x_max, y_max = max(xs), 1.1 * max(max(values) for _, values, _ in series)
+    x_max, y_max = max(xs), 1.3 * max(max(values) for _, values, _ in series)
     out.append(f'<text x="{left}" y="24" font-weight="bold">{title}</text>')
     out.append(f'<path d="M{left} {top}V{top + height}H{left + width}" fill="none" stroke="#444"/>')
     out.append(f'<text x="{left + width}" y="{top + height + 18}" text-anchor="end">{x_max:g} {unit}</text>')
