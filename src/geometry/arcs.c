@@ -49,6 +49,10 @@ static double blur_shift(const fg_datum_line *line, double radius) {
   return line->blur_mm * line->blur_mm / (2 * radius);
 }
 
+double fg_circle_distance(const fg_circle *circle, fg_point p) {
+  return hypot(p.x - circle->x, p.y - circle->y) - circle->radius;
+}
+
 double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_t station) {
   if (!(line->strip->stations[station].weight > 0)) return NAN;
   fg_point p = line->points[station];

@@ -50,6 +50,9 @@ fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc);
 /* Fits the algebraic circle alone, for the search of an arc's ends. */
 fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *arc);
 
+/* Radial distance of a point from a circle, outwards. */
+double fg_circle_distance(const fg_circle *circle, fg_point p);
+
 /* Radial residual of a station, outwards positive; NaN where the station is not usable. It is
  * corrected for the blur's shift. */
 double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_t station);

@@ -95,18 +95,13 @@ static bool place_fillet(const gap *g, const fg_circle *land, int side, double r
   return true;
 }
 
-static double distance_from(const fg_circle *circle, fg_point p) {
-  double dx = p.x - circle->x, dy = p.y - circle->y;
-  return sqrt(dx * dx + dy * dy) - circle->radius;
-}
-
 /* Distance of a point from the arc, the fillet or the land, away from the foil's centre. */
 static double gap_residual(const fillet *f, const fg_circle *bump, const fg_circle *land,
                            fg_point p) {
   double dx = p.x - f->circle.x, dy = p.y - f->circle.y, d = sqrt(dx * dx + dy * dy);
   if (dx * f->axis.x + dy * f->axis.y > f->half_cosine * d) return d - f->circle.radius;
   bool lands = dx * f->to_land.x + dy * f->to_land.y > 0;
-  return lands ? distance_from(land, p) : -distance_from(bump, p);
+  return lands ? fg_circle_distance(land, p) : -fg_circle_distance(bump, p);
 }
 
 /* Returns true when a station counts: it is usable, or on a hidden fillet, and the strip is as wide
@@ -152,7 +147,7 @@ static bool fill_gap_residuals(const fg_datum_line *line, const gap *g, const do
     if (counts(line, g, side, k))
       residuals[i] =
           g->has[side] ? gap_residual(&fillets[side], &g->bumps[side], &land, point_at(line, g, k))
-                       : distance_from(&land, point_at(line, g, k));
+                       : fg_circle_distance(&land, point_at(line, g, k));
   }
   return true;
 }

@@ -4,11 +4,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-
-/* Radial distance of a point from a circle. */
-static double circle_distance(const fg_circle *circle, fg_point p) {
-  return hypot(p.x - circle->x, p.y - circle->y) - circle->radius;
-}
+#include "geometry/arcs.h"
 
 /* Residuals of one station of an arc. `outward_is_inner`: the shaft's side is the one away from
  * the circle's centre, as on a bump. */
@@ -23,9 +19,9 @@ static void fill_residuals(const fg_layout *layout, const fg_arc *arc, size_t k,
   label->residual_um = (float)(1000 * fg_arc_residual(&layout->line, &arc->circle, k));
   if (!(s->weight > 0)) return;
   label->residual_left_um =
-      (float)(1000 * (circle_distance(&arc->circle, s->left) - middle + right + shift));
+      (float)(1000 * (fg_circle_distance(&arc->circle, s->left) - middle + right + shift));
   label->residual_right_um =
-      (float)(1000 * (circle_distance(&arc->circle, s->right) - middle - right + shift));
+      (float)(1000 * (fg_circle_distance(&arc->circle, s->right) - middle - right + shift));
 }
 
 static void label_arc(const fg_layout *layout, const fg_arc *arc, fg_range range, fg_datum datum,

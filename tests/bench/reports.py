@@ -7,9 +7,9 @@ usage: reports.py [--again] [NAME...] | --list | --check
 NAME is a part of a page's name; without one, every page is made. A page that stands in reports/made.csv with the present commit is not
 made again (--again: it is): an interrupted run goes on where it ended. So do benchmarks that keep a row for each input (those with an
 option --fresh), where the run that was interrupted had the same commit; else they forget the rows of the program before. Commands of a
-section whose numbers are times run alone, the others in pairs. What a command says goes to build/reports/. --list writes the columns `made`, `figure` and `goal` anew; --check ends with 1
-where a page is old by its sources and the column does not say so, where a row of reports/figures.csv finds nothing in its page, and where
-the figure in the list is not the page's.
+section whose numbers are times run alone, the others in pairs. What a command says goes to build/reports/. --list writes the columns
+`made`, `figure` and `goal` anew; --check ends with 1 where a page is old by its sources and the column does not say so, where a row of
+reports/figures.csv finds nothing in its page, and where the figure in the list is not the page's.
 """
 
 import concurrent.futures
@@ -137,7 +137,7 @@ def listed(text, made, figures):
     return '\n'.join(lines) + '\n'
 
 
-def forgets_rows(command):
+def keeps_rows(command):
     """True where its benchmark keeps the rows of a run before, unless it is told not to."""
     script = next((word for word in command.split() if word.endswith('.py')), None)
     if not script or '--fresh' in command:
@@ -166,7 +166,7 @@ def make(page, commit):
         for command in page.commands:
             if command.split()[0].endswith('.py'):
                 command = 'python3 ' + command
-            if anew and forgets_rows(command):
+            if anew and keeps_rows(command):
                 command += ' --fresh'
             if subprocess.run(['bash', '-c', command], cwd=ROOT, stdout=stream, stderr=subprocess.STDOUT, check=False).returncode:
                 print('%s: failed, see %s' % (page.name, os.path.relpath(log, ROOT)), flush=True)
