@@ -153,6 +153,10 @@ fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work);
 /* Step 3: `rounds` of Gauss-Newton on all stations. edges_solve.c */
 fg_status fg_edges_solve(fg_context *ctx, fg_edge_work *work, int rounds);
 
+/* Adds all pixels of a chunk to their stations where the power gamma describes the driver;
+ * residuals beyond `limit` are left out. edges_plain.c */
+void fg_edges_add_plain(const fg_edge_work *work, size_t chunk, float limit);
+
 /* Adds all pixels of a chunk to their stations under work->driver; residuals beyond `limit` are
  * left out. edges_driven.c */
 fg_status fg_edges_add_driven(fg_context *ctx, const fg_edge_work *work, size_t chunk, float limit);

@@ -11,52 +11,6 @@
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
 
-/* Values of a station that all its pixels share. */
-typedef struct held {
-  float edge_px[2], blur_inverse[2], plateau, step[2], slope[2], slope_blur[2], reach[2];
-} held;
-
-static held held_of_station(const fg_edge_work *work, const fg_edge_station *s) {
-  float outer = fg_edges_outer(work);
-  return (held){.edge_px = {s->edge_px[0], s->edge_px[1]},
-                .blur_inverse = {1.0f / s->blur_px[0], 1.0f / s->blur_px[1]},
-                .plateau = s->plateau,
-                .step = {s->step[0], s->step[1]},
-                .slope = {s->slope[0], s->slope[1]},
-                .slope_blur = {s->slope[0] * s->blur_px[0], s->slope[1] * s->blur_px[1]},
-                .reach = {fminf((float)FG_REACH_BLURS, outer / s->blur_px[0]),
-                          fminf((float)FG_REACH_BLURS, outer / s->blur_px[1])}};
-}
-
-/* Adds one pixel to its station. */
-static inline void add_pixel(const fg_edge_tables *tables, const held *h, fg_edge_station *s,
-                             float across, float value, float limit) {
-  float d1 = h->edge_px[0] - across, d2 = across - h->edge_px[1];
-  float i1 = h->blur_inverse[0], i2 = h->blur_inverse[1];
-  float t1 = d1 * i1, t2 = d2 * i2;
-  if (t1 > h->reach[0] || t2 > h->reach[1]) return;
-  float p1, c1, p2, c2;
-  fg_edge_normal(tables, t1, &p1, &c1);
-  fg_edge_normal(tables, t2, &p2, &c2);
-  float light = h->plateau + (h->step[0] + h->slope[0] * d1) * c1 + h->slope_blur[0] * p1 +
-                (h->step[1] + h->slope[1] * d2) * c2 + h->slope_blur[1] * p2;
-  float model, rate;
-  fg_edge_tone(tables, light, &model, &rate);
-  if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
-  s->seen++; /* a pixel cut off at an end of the scale is neither evidence nor an outlier */
-  float residual = value - model;
-  if (fabsf(residual) > limit) return;
-  /* The filters omit the slopes: a slope is the least certain part of the shape. */
-  float f1 = rate * h->step[0] * p1 * i1, f2 = -rate * h->step[1] * p2 * i2;
-  s->m11 += f1 * f1;
-  s->m12 += f1 * f2;
-  s->m22 += f2 * f2;
-  s->g1 += f1 * residual;
-  s->g2 += f2 * residual;
-  s->misfit += residual * residual;
-  s->used++;
-}
-
 static void clear_sums(fg_edge_station *s) {
   s->m11 = s->m12 = s->m22 = s->g1 = s->g2 = s->misfit = 0;
   s->used = s->seen = 0;
@@ -98,21 +52,6 @@ static void drop_misfits(fg_edge_work *work) {
   }
 }
 
-/* Adds all pixels of a chunk to their stations. */
-static void add_plain(const fg_edge_work *work, size_t chunk, size_t first, size_t last,
-                      float limit) {
-  held holds[FG_CHUNK_STATIONS];
-  for (size_t i = first; i <= last; i++)
-    holds[i - first] = held_of_station(work, &work->stations[i]);
-  const fg_pixel_band *band = &work->bands[chunk];
-  for (size_t i = 0; i < band->count; i++) {
-    const fg_band_pixel *p = &band->pixels[i];
-    size_t station = (size_t)p->station;
-    add_pixel(work->tables, &holds[station - first], &work->stations[station], p->across_px,
-              p->value, limit);
-  }
-}
-
 /* One round on the stations of one chunk. The variance of the pixels is set afterwards. */
 static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
   fg_edge_work *work = shared;
@@ -126,7 +65,7 @@ static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
   if (work->driver)
     FG_TRY(fg_edges_add_driven(ctx, work, chunk, limit));
   else
-    add_plain(work, chunk, first, last, limit);
+    fg_edges_add_plain(work, chunk, limit);
   for (size_t i = first; i <= last; i++)
     move_edges(&work->stations[i]);
   return FG_OK;

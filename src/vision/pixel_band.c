@@ -103,6 +103,29 @@ static bool is_steep(const fg_reference_station *s) {
   return fabs(s->ty) > fabs(s->tx);
 }
 
+/* Puts pixels of `stations` stations from `first` on in the order of their stations, those of one
+ * as they came. */
+static fg_status sort_by_station(fg_context *ctx, size_t first, size_t stations,
+                                 fg_pixel_band *band) {
+  size_t *next = NULL;
+  fg_band_pixel *sorted = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, stations + 1, sizeof *next, (void **)&next));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, band->count, sizeof *sorted, (void **)&sorted));
+  for (size_t i = 0; i < band->count; i++)
+    next[(size_t)band->pixels[i].station - first + 1]++;
+  for (size_t i = 1; i < stations; i++)
+    next[i] += next[i - 1];
+  for (size_t i = 0; i < band->count; i++)
+    sorted[next[(size_t)band->pixels[i].station - first]++] = band->pixels[i];
+  free(band->pixels);
+  band->pixels = sorted;
+  band->capacity = band->count;
+exit:
+  free(next);
+  return status;
+}
+
 fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles,
                                 const fg_reference *reference, size_t first, size_t last,
                                 double reach_px, fg_pixel_band *band) {
@@ -110,15 +133,16 @@ fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles,
   double area = (double)(last - first + 1) * reference->step_px * (2 * reach_px + 1);
   fg_status status = fg_memory_reserve(ctx, (size_t)(1.1 * area) + 256, sizeof *band->pixels,
                                        &band->capacity, (void **)&band->pixels);
-  while (first <= last && status == FG_OK) {
-    run r = {.tiles = tiles, .reference = reference, .first = first, .reach_px = reach_px};
-    r.steep = is_steep(&reference->stations[first]);
-    r.last = first;
+  for (size_t next = first; next <= last && status == FG_OK;) {
+    run r = {.tiles = tiles, .reference = reference, .first = next, .reach_px = reach_px};
+    r.steep = is_steep(&reference->stations[next]);
+    r.last = next;
     while (r.last < last && is_steep(&reference->stations[r.last + 1]) == r.steep)
       r.last++;
     status = collect_run(ctx, &r, band);
-    first = r.last + 1;
+    next = r.last + 1;
   }
+  if (status == FG_OK) status = sort_by_station(ctx, first, last - first + 1, band);
   if (status != FG_OK) fg_pixel_band_free(band);
   return status;
 }

@@ -21,7 +21,7 @@ typedef struct fg_band_pixel {
 } fg_band_pixel;
 
 typedef struct fg_pixel_band {
-  fg_band_pixel *pixels; /* roughly in order along the strip; owned */
+  fg_band_pixel *pixels; /* in the order of their stations; owned */
   size_t count, capacity;
 } fg_pixel_band;
 
