@@ -152,7 +152,7 @@ static const char *find_given_token(const fg_inspection *station, const fg_reque
 static void set_cookie(const fg_inspection *station, const fg_request *request, const char *token,
                        fg_answer *answer) {
   const char *origin = station->request->origin, *path = request->path;
-  bool plain = strspn(path + 1, "abcdefghijklmnopqrstuvwxyz-") == strlen(path + 1);
+  bool plain = path[0] == '/' && !path[1 + strspn(path + 1, "abcdefghijklmnopqrstuvwxyz-")];
   fg_access_refuse(answer, 303, "");
   fg_text_clip(answer->location, sizeof answer->location, "%s", plain ? path : "/");
   snprintf(answer->cookie, sizeof answer->cookie,

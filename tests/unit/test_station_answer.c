@@ -240,6 +240,8 @@ static void test_token(void **state) {
       {"/", "token=a-token-of-a-station", NULL, 303, "/"},
       {"/history", "token=a-token-of-a-station", NULL, 303, "/history"},
       {"//evil.example/", "token=a-token-of-a-station", NULL, 303, "/"},
+      {"history", "token=a-token-of-a-station", NULL, 303, "/"},
+      {"", "token=a-token-of-a-station", NULL, 303, "/"},
       {"/", "", "foilgauge=a-token-of-a-station", 200, ""},
       {"/", "", "other=1; foilgauge=a-token-of-a-station", 200, ""},
       {"/", "", "notfoilgauge=a-token-of-a-station", 401, ""},
