@@ -16,6 +16,7 @@
 #include "measure/place.h"
 #include "vision/anchor.h"
 #include "vision/edges.h"
+#include "vision/island_split.h"
 #include "vision/segment.h"
 #include "vision/trace.h"
 
@@ -239,9 +240,9 @@ static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
   return status;
 }
 
-static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
+/* Measures an island that holds one object, or objects too near to each other to be parted. */
+static fg_status measure_anchored(fg_context *ctx, fg_session *s, job *j) {
   fg_segmentation seg;
-  if (kind_of(s->measurement)->lies_flat) return measure_flat(ctx, s, j);
   FG_TRY(anchor_job(ctx, s, j));
   FG_TRY(fg_segment(ctx, &j->view, &j->island, min_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
@@ -250,6 +251,33 @@ static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   pthread_mutex_unlock(&s->lock);
   fg_status status = measure_objects(ctx, s, j, &seg);
   fg_segmentation_free(&seg);
+  return status;
+}
+
+/* Cuts one part of an island out of the island's view, as that was cut out of the scan. */
+static fg_status measure_part(fg_context *ctx, fg_session *s, job *whole, fg_island *island) {
+  job part = {.island = *island};
+  memset(island, 0, sizeof *island);
+  fg_status status = fg_island_cut(ctx, &whole->view, &part.island, &part.view, part.origin_px);
+  for (int k = 0; k < 2; k++)
+    part.origin_px[k] += whole->origin_px[k];
+  if (status == FG_OK) status = measure_anchored(ctx, s, &part);
+  free_job(&part);
+  return status;
+}
+
+static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
+  const fg_measurement *m = s->measurement;
+  const fg_island_split_options options = {.min_px = min_object_px(m),
+                                           .gap_px = FG_TRACE_GAP_WIDTHS * expected_width_px(m)};
+  fg_island_list parts;
+  if (kind_of(m)->lies_flat) return measure_flat(ctx, s, j);
+  FG_TRY(fg_island_split(ctx, &j->view, &j->island, &options, &parts));
+  count_specks(s, parts.specks);
+  fg_status status = parts.count ? FG_OK : measure_anchored(ctx, s, j);
+  for (size_t i = 0; i < parts.count && status == FG_OK; i++)
+    status = measure_part(ctx, s, j, &parts.list[i]);
+  fg_island_list_free(&parts);
   return status;
 }
 
@@ -395,44 +423,6 @@ fg_status fg_session_advance(fg_context *ctx, fg_tiles *tiles, void *session) {
   return FG_OK;
 }
 
-static int compare_boxes(const void *a, const void *b) {
-  const int64_t *p = ((const fg_foil *)a)->strip.box_px, *q = ((const fg_foil *)b)->strip.box_px;
-  if (p[1] != q[1]) return (p[1] > q[1]) - (p[1] < q[1]);
-  return (p[0] > q[0]) - (p[0] < q[0]);
-}
-
-static int compare_columns(const void *a, const void *b) {
-  const int64_t *p = ((const fg_foil *)a)->strip.box_px, *q = ((const fg_foil *)b)->strip.box_px;
-  if (p[0] != q[0]) return (p[0] > q[0]) - (p[0] < q[0]);
-  return (p[1] > q[1]) - (p[1] < q[1]);
-}
-
-/* Returns true where two foils lie side by side: their heights overlap by half of the lower one's.
- */
-static bool is_beside(const fg_foil *a, const fg_foil *b) {
-  const int64_t *p = a->strip.box_px, *q = b->strip.box_px;
-  int64_t top = p[1] > q[1] ? p[1] : q[1];
-  int64_t low = p[1] + p[3] < q[1] + q[3] ? p[1] + p[3] : q[1] + q[3];
-  return 2 * (low - top) > (p[3] < q[3] ? p[3] : q[3]);
-}
-
-/* Foils that lie beside the tallest one of a row, from its top on, are that row of the bed. */
-static void sort_foils(fg_measurement *m) {
-  if (!m->foil_count) return;
-  fg_sort_items(m->foils, m->foil_count, sizeof *m->foils, compare_boxes);
-  for (size_t first = 0; first < m->foil_count;) {
-    size_t next = first + 1, tallest = first;
-    while (next < m->foil_count && is_beside(&m->foils[next], &m->foils[tallest])) {
-      if (m->foils[next].strip.box_px[3] > m->foils[tallest].strip.box_px[3]) tallest = next;
-      next++;
-    }
-    fg_sort_items(m->foils + first, next - first, sizeof *m->foils, compare_columns);
-    first = next;
-  }
-  for (size_t i = 0; i < m->foil_count; i++)
-    m->foils[i].number = (int)i + 1;
-}
-
 /* No more islands: the workers run out and end. */
 static void end_work(fg_session *s) {
   pthread_mutex_lock(&s->lock);
@@ -460,7 +450,7 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   s->measurement->light_on_dark = s->light >= s->dark;
   if (kind_of(s->measurement)->lies_flat)
     FG_TRY(fg_flat_foils_assemble(ctx, &s->parts, s->measurement));
-  sort_foils(s->measurement);
+  fg_place_sort_foils(s->measurement);
   fg_gauges_match(&s->sightings, s->measurement);
   count_unmatched(s);
   return FG_OK;

@@ -17,7 +17,6 @@ enum {
      64 pixels around every one of a wanted tile are available; a strip's corner may reach some
      pixels into a tile that is not wanted. */
   REACH_BLOCKS = 6,
-  PIECE_BLOCKS = 8, /* a part of fewer hot blocks is dust, not a piece of a strip */
   ROUNDS_MAX = 6,
 };
 typedef struct hot_block {
@@ -40,15 +39,6 @@ typedef struct work {
   bool *kept; /* of each part */
   int32_t part_count;
 } work;
-
-static fg_levels find_own_levels(const work *w) {
-  size_t histogram[FG_LEVEL_COUNTS] = {0};
-  for (size_t i = 0; i < w->island->count; i++) {
-    const fg_tile *tile = w->tiles->tiles[w->island->tiles[i]];
-    if (tile) fg_levels_count(tile, w->tiles->bytes_per_pixel, UINT64_MAX, histogram);
-  }
-  return fg_levels_find(histogram);
-}
 
 /* The leftmost and the uppermost hot pixel of one tile, where they are beyond those known. */
 static void reach_out(const fg_tile *tile, int bytes_per_pixel, const fg_levels *l,
@@ -169,7 +159,7 @@ static fg_status find_parts(fg_context *ctx, work *w, size_t *specks, bool *larg
   *large = false;
   for (int32_t i = 0; i < w->part_count; i++) {
     const fg_blob *part = &w->parts[i];
-    bool piece = part->area >= PIECE_BLOCKS;
+    bool piece = part->area >= FG_PIECE_BLOCKS;
     *specks += w->kept[i] && !piece;
     w->kept[i] = w->kept[i] && piece;
     *large |= w->kept[i] &&
@@ -269,7 +259,7 @@ static bool is_inside(const work *w) {
 static fg_status iterate_corner(fg_context *ctx, work *w, size_t *specks, bool *converged) {
   int64_t low_px[2], found_px[2];
   bool large, moved = true;
-  fg_levels l = find_own_levels(w);
+  fg_levels l = fg_levels_of_island(w->tiles, w->island);
   *converged = false;
   if (!l.found) return FG_OK;
   guess_corner(w, &l, low_px);

@@ -58,3 +58,14 @@ fg_levels fg_levels_find(const size_t histogram[COUNTS]) {
                      .limit = light ? background + excess : background - excess,
                      .found = number[light] >= PIXELS_MIN};
 }
+
+fg_levels fg_levels_of_island(const fg_tiles *tiles, const fg_island *island) {
+  size_t histogram[COUNTS] = {0};
+  for (size_t i = 0; i < island->count; i++) {
+    int32_t at = island->tiles[i];
+    const fg_tile *tile = tiles->tiles[at];
+    uint64_t inside = fg_tiles_whole_blocks(tiles, at % tiles->columns, at / tiles->columns);
+    if (tile) fg_levels_count(tile, tiles->bytes_per_pixel, inside, histogram);
+  }
+  return fg_levels_find(histogram);
+}

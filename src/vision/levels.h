@@ -3,9 +3,12 @@
 #ifndef FG_VISION_LEVELS_H
 #define FG_VISION_LEVELS_H
 
-#include "vision/tiles.h"
+#include "vision/islands.h"
 
-enum { FG_LEVEL_COUNTS = 256 }; /* 8-bit counts */
+enum {
+  FG_LEVEL_COUNTS = 256, /* 8-bit counts */
+  FG_PIECE_BLOCKS = 8,   /* connected blocks with hot pixels: fewer are dust, no piece of a strip */
+};
 
 /* A pixel is hot with a count of at least the limit where the foil is light, of at most the limit
  * where it is dark. The limit is a whole count, so that a few more pixels of background do not
@@ -31,5 +34,8 @@ void fg_levels_count(const fg_tile *tile, int bytes_per_pixel, uint64_t blocks,
                      size_t histogram[FG_LEVEL_COUNTS]);
 
 fg_levels fg_levels_find(const size_t histogram[FG_LEVEL_COUNTS]);
+
+/* Levels of an island's own tiles. */
+fg_levels fg_levels_of_island(const fg_tiles *tiles, const fg_island *island);
 
 #endif

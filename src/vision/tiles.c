@@ -204,6 +204,16 @@ static int is_kept(const fg_tiles *tiles, int32_t column, int32_t strip) {
   return 0;
 }
 
+uint64_t fg_tiles_whole_blocks(const fg_tiles *tiles, int32_t column, int32_t row) {
+  int64_t across = tiles->width_px / FG_BLOCK_PX - (int64_t)column * FG_BLOCKS_PER_TILE;
+  int64_t down = tiles->height_px / FG_BLOCK_PX - (int64_t)row * FG_BLOCKS_PER_TILE;
+  uint64_t bits = 0;
+  for (int y = 0; y < FG_BLOCKS_PER_TILE && y < down; y++)
+    for (int x = 0; x < FG_BLOCKS_PER_TILE && x < across; x++)
+      bits |= (uint64_t)1 << (y * FG_BLOCKS_PER_TILE + x);
+  return bits;
+}
+
 static size_t tile_bytes(const fg_tiles *tiles) {
   return sizeof(fg_tile) + FG_TILE_PX * FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
 }

@@ -77,6 +77,9 @@ fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
 /* Decides the last tiles; call it after the last strip. */
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles);
 
+/* Bits of a tile's blocks that lie inside the scan with all their pixels. */
+uint64_t fg_tiles_whole_blocks(const fg_tiles *tiles, int32_t column, int32_t row);
+
 /* Makes a tile of zeros where there is none. FG_ERR_MEMORY; FG_ERR_DATA: beyond the budget. */
 fg_status fg_tiles_add(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t row,
                        fg_tile **tile);

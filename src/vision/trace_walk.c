@@ -15,7 +15,6 @@ enum {
   TANGENT_POINTS = 3,   /* steps over which the tangent is taken */
   CONTRAST_HALF_PX = 8, /* pixels to either side of the seed that give the contrast */
 };
-#define GAP_WIDTHS 4.0 /* longest gap that is bridged, in strip widths */
 /* Contrast along the walk: it follows the illumination by a share of every step's own, within these
  * factors of the seed's. */
 #define CONTRAST_SHARE 0.1
@@ -25,9 +24,8 @@ enum {
 /* Limits of the width: a wider cut is more than one strip, a narrower one is none. */
 #define JOINED_WIDTHS 1.6
 #define NARROW_WIDTHS 0.5
-/* Steps of the walk; none is shorter than this. */
-#define STEPS_PER_WIDTH 3.0
-#define STEP_MIN_PX     3.0
+/* Steps of the walk are not shorter than this. */
+#define STEP_MIN_PX 3.0
 /* Background on either side of a cut along the strip. */
 #define WINDOW_MARGIN_PX 6.0
 /* Blur without a visible flank. */
@@ -204,11 +202,11 @@ static bool step_ahead(const fg_trace_walker *w, fg_point p, fg_point *direction
 /* Walks from p in one direction, appending points (p itself excluded). */
 static fg_status walk_strip(fg_context *ctx, fg_trace_walker *w, fg_point p, fg_point tangent,
                             fg_trace *trace) {
-  double step = fmax(STEP_MIN_PX, w->width_px / STEPS_PER_WIDTH), missed = 0,
+  double step = fmax(STEP_MIN_PX, w->width_px / FG_TRACE_STEPS_PER_WIDTH), missed = 0,
          contrast = w->contrast;
   fg_point direction = tangent;
   bool joined = false; /* since the last good point the strip was too wide: an object lies on it */
-  while (missed <= GAP_WIDTHS * w->width_px) {
+  while (missed <= FG_TRACE_MISSED_WIDTHS * w->width_px) {
     fg_point next = point_along(p, direction, step + missed);
     if (is_outside(w, next, 0)) break;
     cut c;

@@ -6,6 +6,12 @@
 #include "foilgauge/circle.h"
 #include "vision/segment.h"
 
+#define FG_TRACE_STEPS_PER_WIDTH 3.0
+/* A walk ends where it has missed the strip for so many widths. With the step that finds it again,
+ * this is the longest gap that is bridged. */
+#define FG_TRACE_MISSED_WIDTHS 4.0
+#define FG_TRACE_GAP_WIDTHS    (FG_TRACE_MISSED_WIDTHS + 1 / FG_TRACE_STEPS_PER_WIDTH)
+
 typedef struct fg_trace {
   fg_point *points; /* px, from one end to the other; owned */
   size_t count, capacity;

@@ -176,11 +176,69 @@ static void foils_beside_it_do_not_change_a_measurement(void **state) {
   free(below.pixels);
 }
 
+/* First pixel of the foil in reading order, or the last one. */
+static int64_t find_outermost(const sheet *s, bool last) {
+  int64_t count = s->width * s->height, limit = s->pixels[0] + 60 * 257;
+  for (int64_t i = 0; i < count; i++) {
+    int64_t at = last ? count - 1 - i : i;
+    if (s->pixels[at] > limit) return at;
+  }
+  fail_msg("no foil");
+  return 0;
+}
+
+/* The bed with noise of its own in some of its rows. */
+static fg_measurement measure_without_rows(const sheet *bed, int64_t from, int64_t to, double dpi) {
+  sheet empty = make_bed(bed, bed->width, bed->height, 4), erased = *bed;
+  size_t row = (size_t)bed->width, begin = (size_t)from * row, end = (size_t)to * row;
+  erased.pixels = malloc((size_t)bed->height * row * sizeof *erased.pixels);
+  assert_non_null(erased.pixels);
+  memcpy(erased.pixels, bed->pixels, (size_t)bed->height * row * sizeof *erased.pixels);
+  memcpy(erased.pixels + begin, empty.pixels + begin, (end - begin) * sizeof *erased.pixels);
+  fg_measurement m = measure_bed(&erased, dpi);
+  assert_int_equal(m.foil_count, 1);
+  free(erased.pixels);
+  free(empty.pixels);
+  return m;
+}
+
+/* Two foils so near to each other that tiles which hold them may touch. */
+static void a_neighbour_on_the_next_tile_does_not_change_a_measurement(void **state) {
+  (void)state;
+  enum { GAP = 84, KEPT = 60, LEFT = 1400 };
+  const double dpi = 1600;
+  const char *scanner = "\"dpi\":1600,\"noise\":1";
+  sheet above = render_sheet(scanner, 3, ""), below = render_sheet(scanner, 4, "");
+  int64_t low = find_outermost(&above, true), high = find_outermost(&below, false);
+  for (int64_t y = 100; y < 100 + FG_TILE_PX; y += 16) {
+    in_row("y = %d", (int)y);
+    int64_t end = y + low / above.width + 1, next = end + GAP;
+    sheet bed = make_bed(&above, above.width + below.width + 2 * LEFT,
+                         above.height + below.height + 2 * ROOM, 3);
+    paste(&below, LEFT + low % above.width - high % below.width, next - high / below.width, &bed);
+    above.height = end + GAP / 2 - y; /* its margin would hide the other foil */
+    paste(&above, LEFT, y, &bed);
+    fg_measurement both = measure_bed(&bed, dpi);
+    fg_measurement alone[2] = {measure_without_rows(&bed, end + KEPT, bed.height, dpi),
+                               measure_without_rows(&bed, 0, next - KEPT, dpi)};
+    assert_int_equal(both.foil_count, 2);
+    for (int i = 0; i < 2; i++) {
+      assert_same(&alone[i].foils[0], &both.foils[i]);
+      fg_measurement_free(&alone[i]);
+    }
+    fg_measurement_free(&both);
+    free(bed.pixels);
+  }
+  free(above.pixels);
+  free(below.pixels);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_foil_does_not_depend_on_its_place),
       cmocka_unit_test(a_dark_16_bit_scan_measures_the_same_after_a_move),
       cmocka_unit_test(foils_beside_it_do_not_change_a_measurement),
+      cmocka_unit_test(a_neighbour_on_the_next_tile_does_not_change_a_measurement),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
