@@ -50,23 +50,38 @@ static size_t first_block(const split *s, int32_t tile) {
          (size_t)(column * FG_BLOCKS_PER_TILE + s->reach);
 }
 
-static bool is_hot_block(const fg_tile *tile, int bytes_per_pixel, const fg_levels *l, int block) {
-  int x = block % FG_BLOCKS_PER_TILE, y = block / FG_BLOCKS_PER_TILE;
-  size_t first = (size_t)((y * FG_TILE_PX + x) * FG_BLOCK_PX);
-  for (size_t v = 0; v < FG_BLOCK_PX; v++)
-    for (size_t u = 0; u < FG_BLOCK_PX; u++)
-      if (fg_levels_is_hot(l, fg_tile_count(tile, bytes_per_pixel, first + v * FG_TILE_PX + u)))
-        return true;
-  return false;
+/* Columns of a tile that hold a hot pixel in one row of blocks; `flip` makes dark pixels light.
+ */
+static inline __attribute__((always_inline)) void
+find_hot_columns(const fg_tile *tile, int bytes_per_pixel, size_t first, uint8_t flip,
+                 uint8_t limit, uint8_t hot[FG_TILE_PX]) {
+  memset(hot, 0, FG_TILE_PX);
+  for (size_t y = 0; y < FG_BLOCK_PX; y++)
+    for (size_t x = 0; x < FG_TILE_PX; x++) {
+      uint8_t count = (uint8_t)fg_tile_count(tile, bytes_per_pixel, first + y * FG_TILE_PX + x);
+      hot[x] |= (uint8_t)(count ^ flip) >= limit;
+    }
+}
+
+static void mark_row(split *s, const fg_levels *l, const fg_tile *tile, size_t row, uint64_t inside,
+                     uint8_t *cells) {
+  uint8_t hot[FG_TILE_PX], flip = l->light ? 0 : UINT8_MAX, limit = (uint8_t)(l->limit ^ flip);
+  size_t first = row * FG_BLOCK_PX * FG_TILE_PX;
+  if (s->tiles->bytes_per_pixel == 1)
+    find_hot_columns(tile, 1, first, flip, limit, hot);
+  else
+    find_hot_columns(tile, 2, first, flip, limit, hot);
+  for (size_t b = 0; b < FG_BLOCKS_PER_TILE; b++)
+    cells[b] = inside >> (row * FG_BLOCKS_PER_TILE + b) & 1 &&
+               memcmp(hot + b * FG_BLOCK_PX, (uint8_t[FG_BLOCK_PX]){0}, FG_BLOCK_PX) != 0;
 }
 
 static void mark_tile(split *s, const fg_levels *l, int32_t at) {
   const fg_tile *tile = s->tiles->tiles[at];
   uint64_t inside = fg_tiles_whole_blocks(s->tiles, at % s->tiles->columns, at / s->tiles->columns);
   uint8_t *cells = s->hot + first_block(s, at);
-  for (int b = 0; tile && b < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; b++)
-    cells[b / FG_BLOCKS_PER_TILE * s->width + b % FG_BLOCKS_PER_TILE] =
-        inside >> b & 1 && is_hot_block(tile, s->tiles->bytes_per_pixel, l, b);
+  for (size_t row = 0; tile && row < FG_BLOCKS_PER_TILE; row++)
+    mark_row(s, l, tile, row, inside, cells + row * (size_t)s->width);
 }
 
 static void mark_near(split *s, size_t block) {
@@ -77,25 +92,33 @@ static void mark_near(split *s, size_t block) {
 
 /* Marks the surroundings of all pieces, and clears dust: between two foils it does not join them.
  */
-static fg_status mark_pieces(fg_context *ctx, split *s) {
+static void mark_pieces(split *s, const fg_blob *pieces) {
   size_t count = (size_t)s->width * (size_t)s->height;
-  fg_blob *pieces;
-  int32_t piece_count;
-  FG_TRY(fg_grid_label(ctx, s->hot, s->width, s->height, s->labels, &pieces, &piece_count));
   for (size_t i = 0; i < count; i++)
     if (s->labels[i] && pieces[s->labels[i] - 1].area >= FG_PIECE_BLOCKS)
       mark_near(s, i);
     else
       s->hot[i] = 0;
-  free(pieces);
-  return FG_OK;
+}
+
+static bool holds_two_pieces(const fg_blob *blobs, int32_t count) {
+  int pieces = 0;
+  for (int32_t i = 0; i < count; i++)
+    pieces += blobs[i].area >= FG_PIECE_BLOCKS;
+  return pieces > 1;
 }
 
 static fg_status find_groups(fg_context *ctx, split *s) {
   fg_levels l = fg_levels_of_island(s->tiles, s->island);
   for (size_t i = 0; l.found && i < s->island->count; i++)
     mark_tile(s, &l, s->island->tiles[i]);
-  FG_TRY(mark_pieces(ctx, s));
+  fg_blob *blobs;
+  int32_t count;
+  FG_TRY(fg_grid_label(ctx, s->hot, s->width, s->height, s->labels, &blobs, &count));
+  bool several = holds_two_pieces(blobs, count);
+  if (several) mark_pieces(s, blobs);
+  free(blobs);
+  if (!several) return FG_OK;
   return fg_grid_label(ctx, s->near, s->width, s->height, s->labels, &s->groups, &s->group_count);
 }
 
