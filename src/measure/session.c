@@ -55,7 +55,7 @@ struct fg_session {
   bool ended;           /* nothing more will be queued */
   fg_status status;
   fg_context context;
-  size_t light, dark;  /* islands by polarity */
+  size_t light, dark;  /* tiles of islands by polarity */
   fg_flat_parts parts; /* form cantilever */
   fg_gauge_sightings sightings;
   size_t foil_capacity;
@@ -247,7 +247,7 @@ static fg_status measure_anchored(fg_context *ctx, fg_session *s, job *j) {
   FG_TRY(fg_segment(ctx, &j->view, &j->island, min_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
   pthread_mutex_lock(&s->lock);
-  if (seg.object_count) *(seg.light_on_dark ? &s->light : &s->dark) += 1;
+  if (seg.object_count) *(seg.light_on_dark ? &s->light : &s->dark) += j->island.count;
   pthread_mutex_unlock(&s->lock);
   fg_status status = measure_objects(ctx, s, j, &seg);
   fg_segmentation_free(&seg);
