@@ -158,7 +158,7 @@ static void add_foil_squares(const fg_formed_foil *foil, fg_formed formed, size_
   if (!(count > 0)) return;
   data->level_squares += sum * sum / count;
   data->level_dof++;
-  data->rest_squares += squares - sum * sum / count;
+  data->rest_squares += fmax(squares - sum * sum / count, 0);
   data->rest_dof += count - 1;
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "geometry/land_step.h"
 #include "geometry/level_uncertainty.h"
 #include "geometry/shadow_uncertainty.h"
 
@@ -163,6 +164,15 @@ static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
   return n;
 }
 
+/* Adds what the overall circle would change by if the scan jumps between two lands. */
+static void add_land_step(fg_layout *layout) {
+  double change[3];
+  if (!fg_land_step_find(layout, change)) return;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      layout->overall.covariance[p][q] += change[p] * change[q];
+}
+
 fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const fg_design *design,
                                      fg_foil *foil) {
   fg_arc *arcs = NULL;
@@ -186,6 +196,7 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const f
     add_line_shift(layout, design, foil, &layout->bumps[i]);
   }
   find_overall_covariance(layout, design, foil);
+  add_land_step(layout);
   return FG_OK;
 }
 

@@ -159,7 +159,7 @@ static void oval_row(const fg_layout *layout, fg_range land, double row[OVAL_TER
   memcpy(row, terms, sizeof terms);
 }
 
-static double mean_distance(const fg_layout *layout, fg_range land) {
+double fg_layout_land_distance(const fg_layout *layout, fg_range land) {
   double sum = 0, n = 0;
   for (size_t k = land.first; k <= land.last; k++) {
     double r = fg_arc_residual(&layout->line, &layout->overall.circle, k);
@@ -178,7 +178,7 @@ static bool fit_oval(const fg_layout *layout, double oval[FG_SMALL_MAX]) {
   for (size_t i = 0; i <= layout->turning.bump_count; i++) {
     double row[OVAL_TERMS], distance_mm;
     if (!layout->lands[i].last) continue;
-    distance_mm = mean_distance(layout, layout->lands[i]);
+    distance_mm = fg_layout_land_distance(layout, layout->lands[i]);
     if (!isfinite(distance_mm)) continue;
     oval_row(layout, layout->lands[i], row);
     fg_normal_add(&system, row, distance_mm, 1);
@@ -200,7 +200,7 @@ static void find_displaced(fg_layout *layout, const double *oval, size_t usual, 
   oval_row(layout, found, row);
   for (int k = 0; oval && k < OVAL_TERMS; k++)
     expected_mm += oval[k] * row[k];
-  if (fabs(mean_distance(layout, found) - expected_mm) < near_limit(layout))
+  if (fabs(fg_layout_land_distance(layout, found) - expected_mm) < near_limit(layout))
     *land = found;
   else
     layout->land_displaced = true;

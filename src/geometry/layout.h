@@ -26,6 +26,10 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
 
 void fg_layout_free(fg_layout *layout);
 
+/* Returns the mean distance of a land's stations from the overall circle, mm, outwards; NaN: it has
+ * none. */
+double fg_layout_land_distance(const fg_layout *layout, fg_range land);
+
 /* Fills `overall` from its circle's fit, without the contribution of the pixels' noise to its
  * covariance. */
 void fg_layout_overall(const fg_layout *layout, const fg_design *design, fg_overall *overall);

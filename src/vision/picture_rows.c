@@ -34,9 +34,9 @@ enum { BENDS = 4, FIT_REACH = 12, SHIFT_MAX = 5 };
 #define SAME_SHARE  0.15
 #define SAME_PX     0.2
 
-/* Number of tiles in which a row must equal the next; with noise of less than NOISE_MIN counts it
+/* Number of pixels in which a row must equal the next; with noise of less than NOISE_MIN counts it
  * could. Where more than a tenth of the rows are doubled the driver has enlarged the picture. */
-enum { DOUBLED_TILES = 3 };
+enum { DOUBLED_PIXELS = 128 };
 #define NOISE_MIN     0.4
 #define DOUBLED_SHARE 0.1
 
@@ -215,49 +215,42 @@ static void count_jumps(row_search *r, fg_picture_state *state) {
   if (state->row_jumps > 0) state->findings |= FG_PICTURE_ROW_JUMPS;
 }
 
-/* Returns true when a row of a tile has noise: rows outside the scan have none. */
-static bool has_noise(const uint8_t *row, size_t bytes) {
-  size_t changes = 0;
-  for (size_t i = 2; i < bytes; i++)
-    changes += row[i] != row[i - 2];
-  return 4 * changes > bytes;
-}
+/* Pixels of a row that were held against those below, and how many differ from the one before. */
+typedef struct row_match {
+  size_t pixels, changes;
+  bool same;
+} row_match;
 
-/* Returns true when a row of a tile equals the one below it. */
-static bool is_doubled(const fg_tiles *tiles, int32_t column, int64_t y) {
+/* Holds a row of a tile against the next one, by blocks that both know. */
+static void match_tile(const fg_tiles *tiles, int32_t column, int64_t y, row_match *match) {
   const fg_tile *tile = fg_tiles_at(tiles, column, (int32_t)(y / FG_TILE_PX));
   const fg_tile *next = fg_tiles_at(tiles, column, (int32_t)((y + 1) / FG_TILE_PX));
-  size_t bytes = (size_t)FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
-  if (!tile || !next) return false;
-  const uint8_t *row = tile->pixels + (size_t)(y % FG_TILE_PX) * bytes;
-  return !memcmp(row, next->pixels + (size_t)((y + 1) % FG_TILE_PX) * bytes, bytes) &&
-         has_noise(row, bytes);
+  if (!tile || !next) return;
+  size_t bytes = (size_t)tiles->bytes_per_pixel, length = FG_BLOCK_PX * bytes;
+  size_t above = (size_t)(y % FG_TILE_PX), below = (size_t)((y + 1) % FG_TILE_PX);
+  for (size_t b = 0; b < FG_BLOCKS_PER_TILE && match->same; b++) {
+    if (isnan(tile->blocks[above / FG_BLOCK_PX * FG_BLOCKS_PER_TILE + b]) ||
+        isnan(next->blocks[below / FG_BLOCK_PX * FG_BLOCKS_PER_TILE + b]))
+      continue;
+    const uint8_t *row = tile->pixels + (above * FG_TILE_PX + b * FG_BLOCK_PX) * bytes;
+    match->same =
+        !memcmp(row, next->pixels + (below * FG_TILE_PX + b * FG_BLOCK_PX) * bytes, length);
+    match->pixels += FG_BLOCK_PX;
+    for (size_t i = 1; i < FG_BLOCK_PX; i++)
+      match->changes += memcmp(row + i * bytes, row + (i - 1) * bytes, bytes) != 0;
+  }
 }
 
-/* Lists kept tiles that lie inside the scan in the row of tiles that holds row y and the next. */
-static size_t tiles_of_row(const fg_tiles *tiles, int64_t y, int32_t columns[DOUBLED_TILES]) {
-  size_t n = 0;
-  for (int32_t c = 0; (int64_t)(c + 1) * FG_TILE_PX <= tiles->width_px && n < DOUBLED_TILES; c++)
-    if (fg_tiles_at(tiles, c, (int32_t)(y / FG_TILE_PX)) &&
-        fg_tiles_at(tiles, c, (int32_t)((y + 1) / FG_TILE_PX)))
-      columns[n++] = c;
-  return n;
-}
-
-/* Number of rows that equal the next one in several tiles, which noise never makes. */
+/* Number of rows that equal the next one wherever they are kept, which noise never makes. */
 static double count_doubled(const fg_tiles *tiles, double *rows) {
-  int32_t columns[DOUBLED_TILES];
   double doubled = 0;
-  size_t n = 0;
   *rows = 0;
   for (int64_t y = 0; y + 1 < tiles->height_px; y++) {
-    if (y % FG_TILE_PX == 0 || (y + 1) % FG_TILE_PX == 0 || y % FG_TILE_PX == 1)
-      n = tiles_of_row(tiles, y, columns);
-    size_t same = 0;
-    while (same < n && is_doubled(tiles, columns[same], y))
-      same++;
-    *rows += n == DOUBLED_TILES;
-    doubled += n == DOUBLED_TILES && same == n;
+    row_match match = {.same = true};
+    for (int32_t c = 0; (int64_t)(c + 1) * FG_TILE_PX <= tiles->width_px && match.same; c++)
+      match_tile(tiles, c, y, &match);
+    *rows += match.pixels > 0;
+    doubled += match.same && match.pixels >= DOUBLED_PIXELS && 4 * match.changes > match.pixels;
   }
   return doubled;
 }

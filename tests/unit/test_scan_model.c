@@ -66,6 +66,7 @@ static fg_scan_loop *make_loop(void) {
     other->effects[other->count++] = set->effects[e];
   loop->tie_count = 1;
   loop->tied = true;
+  loop->explanations.count = 1;
   decide(loop);
   return loop;
 }
