@@ -18,6 +18,7 @@
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
 #include "geometry/land_deviation.h"
+#include "geometry/land_step.h"
 #include "geometry/recognise.h"
 #include "geometry/shadow_uncertainty.h"
 
@@ -33,6 +34,9 @@
 #define COARSE_WIDTHS 2.0
 /* Springback moves the overall radius by less than this factor, and the thickness by nothing. */
 #define SCALE_FACTOR 1.2
+/* Chance of lands that lie as if the scan jumped between two of them, below which they are flagged.
+ */
+#define STEP_CHANCE 1e-4
 
 bool fg_foil_is_measured(const fg_foil *foil) {
   return !(foil->flags & (FG_FOIL_NOT_MEASURED | FG_FOIL_NOT_THIS_DESIGN));
@@ -247,7 +251,8 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   bool land, fillet;
   FG_TRY(fg_land_deviation_find(ctx, layout, &land));
   FG_TRY(fg_fillet_deviation_find(ctx, design, layout, &fillet));
-  if (land || fillet || layout->land_displaced) foil->flags |= FG_FOIL_LAND_DEVIATES;
+  bool step = fg_land_step_find(layout).chance < STEP_CHANCE;
+  if (land || fillet || step || layout->land_displaced) foil->flags |= FG_FOIL_LAND_DEVIATES;
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 

@@ -5,8 +5,6 @@
 
 #include "core/small_solve.h"
 
-/* Of foils without a jump 1 in 100 may seem to have one: it costs them uncertainty. */
-#define FALSE_SHARE 0.01
 /* An oval explains the distances as well where it leaves so many times the jump's squares. */
 #define OVAL_SQUARES 2.0
 
@@ -55,22 +53,24 @@ static double fit_lands(const land_list *lands, size_t first, bool oval, double 
   return left;
 }
 
-bool fg_land_step_find(const fg_layout *layout, double change[3]) {
+fg_land_step fg_land_step_find(const fg_layout *layout) {
+  fg_land_step step = {.chance = 1};
   land_list lands;
   double x[FG_SMALL_MAX], best = INFINITY;
   list_lands(layout, &lands);
-  if (lands.count < LANDS_MIN) return false;
+  if (lands.count < LANDS_MIN) return step;
   for (size_t first = 2; first + 2 <= lands.count; first++) {
     double left = fit_lands(&lands, first, false, x);
     if (left >= best) continue;
     best = left;
     for (int k = 0; k < 2; k++)
-      change[k] = x[k] + x[CIRCLE_TERMS + k] / 2;
-    change[2] = x[2];
+      step.change[k] = x[k] + x[CIRCLE_TERMS + k] / 2;
+    step.change[2] = x[2];
   }
   double none = fit_lands(&lands, lands.count, false, x), oval = fit_lands(&lands, 0, true, x);
-  if (!(best * OVAL_SQUARES < oval)) return false;
+  if (!(best * OVAL_SQUARES < oval)) return step;
   /* The F test of two more terms, for as many places as were tried. */
-  double chance = pow(best / none, 0.5 * (double)(lands.count - TERMS));
-  return chance * (double)(lands.count - 3) < FALSE_SHARE;
+  double one = pow(best / none, 0.5 * (double)(lands.count - TERMS));
+  step.chance = fmin(one * (double)(lands.count - 3), 1);
+  return step;
 }

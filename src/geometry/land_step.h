@@ -5,9 +5,13 @@
 
 #include "geometry/layout.h"
 
+typedef struct fg_land_step {
+  double chance;    /* of distances as far from one circle without a jump; 1: no jump was sought */
+  double change[3]; /* of the circle's x, y and radius, if the scan jumps */
+} fg_land_step;
+
 /* Finds the jump that the lands' distances from the overall circle speak for, against no jump and
- * against an oval foil. `change` is what the circle's x, y and radius would change by (the centre
- * halfway between both parts of the scan). False: there is none, or there are too few lands. */
-bool fg_land_step_find(const fg_layout *layout, double change[3]);
+ * against an oval foil. The changed centre lies halfway between both parts of the scan. */
+fg_land_step fg_land_step_find(const fg_layout *layout);
 
 #endif

@@ -9,6 +9,7 @@
 #include "core/select.h"
 #include "core/text.h"
 #include "table_loop/parts.h"
+#include "table_loop/places.h"
 
 /* Two columns on a straight line may differ by so much of their range: digits of a file. */
 #define SAME_LINE 1e-9
@@ -73,9 +74,18 @@ static bool has_part(const fg_loop_coordinate *at) {
          (FG_LOOP_ORDER | FG_LOOP_BUMP | FG_LOOP_DECLARED | FG_LOOP_TEMPERATURE | FG_LOOP_DURATION);
 }
 
+/* Places that were taken in turn, evenly spaced: a cycle of theirs has a base, one of the runs has
+ * none. Both stay, and what either explains is tied. */
+static bool is_order_of_places(const fg_loop_table_spec *spec, const fg_loop_coordinate *order,
+                               const fg_loop_coordinate *places) {
+  return order->roles & FG_LOOP_ORDER && !(places->roles & FG_LOOP_ORDER) &&
+         fg_loop_places_have_base(spec, places);
+}
+
 /* Chooses which of two columns with the same content goes; SIZE_MAX: neither. */
-static fg_status find_superfluous(fg_context *ctx, const fg_loop_problem *problem, size_t a,
+static fg_status find_superfluous(fg_context *ctx, const fg_loop_table_state *build, size_t a,
                                   size_t b, size_t *gone) {
+  const fg_loop_problem *problem = &build->out->problem;
   fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
   bool words = x->levels && y->levels, numbers = !x->levels && !y->levels, same = false;
   *gone = SIZE_MAX;
@@ -84,7 +94,8 @@ static fg_status find_superfluous(fg_context *ctx, const fg_loop_problem *proble
     same = on_a_line(problem->rows, x, y);
   else
     FG_TRY(one_to_one(ctx, problem->rows, x, y, &same));
-  if (!same) return FG_OK;
+  if (!same || is_order_of_places(build->spec, x, y) || is_order_of_places(build->spec, y, x))
+    return FG_OK;
   if (!words && !numbers)
     (x->levels ? y : x)->coded = true;
   else if (!has_part(x) || !has_part(y))
@@ -99,7 +110,7 @@ fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *
     for (size_t b = a + 1; b < problem->coordinates; b++) {
       size_t gone;
       char why[FG_LOOP_NAME + 40];
-      FG_TRY(find_superfluous(ctx, problem, a, b, &gone));
+      FG_TRY(find_superfluous(ctx, build, a, b, &gone));
       if (gone == SIZE_MAX) continue;
       fg_text_clip(why, sizeof why, "says the same as %s", problem->coordinate[a + b - gone].name);
       FG_TRY(fg_loop_table_leave_out(ctx, build, problem->coordinate[gone].name, why));

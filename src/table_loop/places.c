@@ -88,6 +88,12 @@ static double turn_of(const fg_loop_coordinate *at) {
   return turn > 0 && range >= 0.75 * turn ? turn : 0;
 }
 
+bool fg_loop_places_have_base(const fg_loop_table_spec *spec, const fg_loop_coordinate *at) {
+  for (size_t i = 0; i < spec->periods; i++)
+    if (!strcmp(spec->period[i].column, at->name)) return true;
+  return !at->levels && turn_of(at) > 0;
+}
+
 static fg_status declare(fg_context *ctx, const fg_loop_table_state *build,
                          const fg_loop_known_period *known) {
   const fg_loop_problem *problem = &build->out->problem;

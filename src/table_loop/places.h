@@ -7,6 +7,9 @@
 
 /* Finds the spacing of a coordinate's places from its sorted values. */
 void fg_loop_places_measure(const double *sorted, size_t rows, fg_loop_coordinate *at);
+/* Returns true where a base period is known: of an angle, or declared. */
+bool fg_loop_places_have_base(const fg_loop_table_spec *spec, const fg_loop_coordinate *at);
+
 /* Sets the base periods that are known: a turn of every angle, and those that were declared. */
 fg_status fg_loop_places_find_bases(fg_context *ctx, const fg_loop_table_state *build);
 

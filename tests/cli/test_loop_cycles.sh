@@ -48,6 +48,15 @@ order() { # order NAME ORDER MEMBER
   value "$1.json" "next(o['$3'] for o in r['claims'][$at]['orders'] if o['order'] == $2)"
 }
 
+# Places taken in turn: the cycle is an order of the angle's turn, and the runs say the same.
+python3 -c 'import math, random
+rng = random.Random(8)
+print("run,angle_deg,error_um")
+for i in range(72): print(f"{i + 1},{5 * i},{1.8 * math.cos(math.radians(15 * i - 40)) + rng.gauss(0, 0.6):.3f}")' >even.csv
+"$program" loop --table even.csv --response error_um --model 1 -o even.json || fail "even: exit code"
+value even.json "r['summary']" | grep -q "over angle_deg that returns every 120° (order 3 of 360°).*cannot tell from: a periodic change over the runs" ||
+  fail "places taken in turn: $(value even.json "r['summary']")"
+
 look turn angle_deg
 [ "$(value turn.json "[o['order'] for o in r['claims'][$at]['orders']]")" = "[1, 2, 5]" ] || fail "orders of a turn: $(cat turn.json)"
 [ "$(value turn.json "r['claims'][$at]['base_period']")" = known ] || fail "the turn of an angle is not known"

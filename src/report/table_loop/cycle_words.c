@@ -35,7 +35,7 @@ static void put_period(const char *name, double period, double u, char text[PLAC
     put_value(name, period, u, text);
     return;
   }
-  fg_scan_loop_value_words(period, 2 * u, text, PLACE_WORDS);
+  fg_scan_loop_value_words(period, u, text, PLACE_WORDS);
   append_text(text, PLACE_WORDS, *unit && strcmp(unit, "°") != 0 ? " " : "");
   append_text(text, PLACE_WORDS, unit);
 }
