@@ -22,11 +22,11 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_FEW_LANDS, "few_lands",
      "The overall circle rests on few lands: what follows from it is less certain."},
     {FG_FOIL_LAND_DEVIATES, "land_deviates",
-     "At one place a land leaves its circle, a fillet is not as the others, or an arc is broken, "
-     "by more than the scatter of the edges explains: a dent, a crease, or rows of the scan that "
-     "jump. The overall radius is that of the lands without such places, as far as they stand out; "
-     "it and the heights of bumps may be off by more than their U: look at the foil, and scan "
-     "again."},
+     "At one place a land leaves its circle, a fillet is not as the others, an arc is broken, or "
+     "all lands beyond it are displaced, by more than the scatter of the edges explains: a dent, a "
+     "crease, or rows of the scan that jump. The overall radius is that of the lands without such "
+     "places, as far as they stand out; heights of bumps, and after a dent the overall radius, may "
+     "be off by more than their U: look at the foil, and scan again."},
     {FG_FOIL_CLIPPED, "clipped",
      "Pixels at the edges are at the end of the gray scale: scan with less exposure or contrast."},
     {FG_FOIL_SIDE_BAND, "side_band",
