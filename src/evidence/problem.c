@@ -18,6 +18,10 @@
 /* Variance of the linearisation error over that of the noise, from which a second linearisation is
  * worth its time. */
 #define LARGE_SHARE 0.1
+/* A strip of less than so many blurs has no plateau, and its edges err by a share of the blur that
+ * grows as the cube of how far it is below: of sound foils at 600 dpi nothing is claimed then. */
+#define PLATEAU_BLURS 3.0
+#define COARSE_BLURS  0.004
 /* Length over which such errors are alike, mm. */
 #define ERROR_LENGTH_MM 0.3
 
@@ -49,6 +53,19 @@ static double row_spacing_mm(const fg_evidence_problem *p) {
   return count ? sum / (double)count : ERROR_LENGTH_MM;
 }
 
+/* Error of the edge model on the coarsest view of a foil, um; 0: every strip has a plateau. */
+static double find_coarse_error_um(const fg_edge_fit *edge_fit) {
+  double largest = 0;
+  for (size_t v = 0; v < edge_fit->view_count; v++) {
+    const fg_foil *foil = edge_fit->views[v].foil;
+    if (!foil) continue;
+    double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
+    double overlap = PLATEAU_BLURS * blur_um / (1000 * foil->strip.thickness_mm);
+    if (overlap > 1) largest = fmax(largest, COARSE_BLURS * (pow(overlap, 3) - 1) * blur_um);
+  }
+  return largest;
+}
+
 static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
   const fg_scatter *s = &p->edge_fit->scatter;
   double square = 0, weight = 0;
@@ -60,7 +77,8 @@ static void find_noise_um(fg_evidence_problem *p, const double *residual_um) {
   double linear2 = LINEARITY_SHARE * LINEARITY_SHARE * (weight > 0 ? square / weight : 0);
   double alike = fmax(1, sqrt(M_PI) * ERROR_LENGTH_MM / row_spacing_mm(p));
   double integral = s->share > 0 ? s->integral : 1;
-  p->error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + linear2);
+  double coarse_um = find_coarse_error_um(p->edge_fit);
+  p->error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + coarse_um * coarse_um + linear2);
   double error2 = p->error_um * p->error_um * alike;
   p->noise_um = sqrt(s->row_um * s->row_um * integral * fmax(1, s->swell) + error2);
   p->large = linear2 * alike > LARGE_SHARE * p->noise_um * p->noise_um;
