@@ -264,8 +264,9 @@ def write_curve(folder, rows, kinds, sizes):
             table.append(cells + [f"{100 * found:.0f}", f"{100 * right:.0f}"])
     lines = [
         "# The smallest effect that the loop finds", "",
-        "Made by `python3 tests/bench/loop_scans.py build/foilgauge --curve`. The scans are those of loop_scans.md: tone,",
-        "shading and halo are in some of them. Found: the verdict is not `clean`. Named: the effect, or it is in the class.", "",
+        f"Made by `python3 tests/bench/loop_scans.py build/foilgauge --curve --trials {max(row[3] for row in table)}`. The scans are",
+        "those of loop_scans.md: tone, shading and halo are in some. Found: the verdict is not `clean`. Named: the effect, or it is in",
+        "the class.", "",
         "![share of effects found against their size](loop_scans_curve.svg)", "",
     ]  # fmt: skip
     lines += markdown(["effect", "scans", "µm at the ends", "trials", "found %", "named %"], table)
