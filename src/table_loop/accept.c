@@ -104,6 +104,63 @@ static fg_status right_basis(fg_context *ctx, const fg_engine_run *run, const fg
   return FG_OK;
 }
 
+/* Returns the best listed effect over a coordinate that passes a step; run->means: there is none.
+ * Only cycles where `cycles` is set. */
+static size_t best_over(const fg_engine_run *run, const fg_engine_step *step, size_t coordinate,
+                        bool cycles) {
+  size_t best = run->means;
+  for (size_t c = 0; c < run->means; c++) {
+    const fg_loop_candidate *candidate = &run->candidate[c];
+    if (fg_engine_is_curve(candidate) || candidate->effect->pair || candidate->a != coordinate ||
+        (cycles && !candidate->effect->cycle) || !isfinite(step->stand[c].z) ||
+        !(fg_engine_stand_p(run, step, c) < bar(run)))
+      continue;
+    if (best == run->means || step->stand[c].z > step->stand[best].z) best = c;
+  }
+  return best;
+}
+
+/* Share of a column's range that a cycle's period may have: one that does not return is any curve.
+ */
+#define RETURNS_WITHIN 0.55
+
+static bool returns(const fg_engine_run *run, const fg_engine_stand *stand) {
+  const fg_loop_coordinate *at = &run->problem->coordinate[stand->candidate.a];
+  return stand->candidate.effect->cycle && stand->shape[0] <= RETURNS_WITHIN * (at->high - at->low);
+}
+
+/* Keeps the winner when a second listed effect beside it leaves no curve anything to explain: a
+ * cycle of few turns on a trend or a step looks like a curve. */
+static fg_status right_pair(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
+                            basis_choice *choice) {
+  const fg_loop_candidate *winner = &step->stand[choice->winner].candidate;
+  fg_engine_run beside = *run;
+  fg_engine_step other;
+  fg_engine_noise noise;
+  double p = 0;
+  if (run->set.count + 1 > FG_LOOP_CLAIMS) return FG_OK;
+  fg_engine_set_extend(run, &step->stand[choice->winner], &beside.set);
+  FG_TRY(fg_engine_step_open(ctx, &beside, &beside.set, false, &other));
+  fg_status status = FG_OK;
+  size_t second = best_over(&beside, &other, winner->a, !winner->effect->cycle);
+  if (second == run->means) goto exit;
+  FG_TRY_EXIT(noise_beside(ctx, &beside, &other.stand[second], &noise));
+  FG_TRY_EXIT(refine_stand(ctx, &beside, noise, &other.stand[second]));
+  if (!returns(run, &step->stand[choice->winner]) && !returns(run, &other.stand[second])) goto exit;
+  choice->wrong = false;
+  for (size_t c = 0; c < run->means && !choice->wrong; c++) {
+    if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != winner->a ||
+        !isfinite(other.stand[c].z))
+      continue;
+    FG_TRY_EXIT(
+        fg_engine_beside(ctx, &other.training, noise, &other.stand[second], &other.stand[c], &p));
+    choice->wrong = p <= BESIDE_P;
+  }
+exit:
+  fg_engine_step_close(&other);
+  return status;
+}
+
 /* Tests whether the best curve over the winner's coordinate explains more than the winner: then the
  * true basis is not in the table. */
 static fg_status wrong_basis(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
@@ -126,7 +183,8 @@ static fg_status wrong_basis(fg_context *ctx, const fg_engine_run *run, const fg
       choice->wrong = true;
     }
   }
-  return choice->wrong ? right_basis(ctx, run, step, choice) : FG_OK;
+  if (choice->wrong) FG_TRY(right_basis(ctx, run, step, choice));
+  return choice->wrong ? right_pair(ctx, run, step, choice) : FG_OK;
 }
 
 static fg_status gate(fg_context *ctx, const fg_engine_run *run, const fg_engine_set *with,
