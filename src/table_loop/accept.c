@@ -79,6 +79,7 @@ static fg_status refine_stand(fg_context *ctx, const fg_engine_run *run, fg_engi
 typedef struct basis_choice {
   size_t winner, curve;
   bool wrong; /* the winner's basis is not the true one: the curve is right */
+  bool pair;  /* the winner is right, beside a second effect that is still in the residual */
   fg_engine_noise noise;
 } basis_choice;
 
@@ -156,6 +157,7 @@ static fg_status right_pair(fg_context *ctx, const fg_engine_run *run, const fg_
         fg_engine_beside(ctx, &other.training, noise, &other.stand[second], &other.stand[c], &p));
     choice->wrong = p <= BESIDE_P;
   }
+  choice->pair = !choice->wrong;
 exit:
   fg_engine_step_close(&other);
   return status;
@@ -412,9 +414,10 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
   FG_TRY(fg_engine_prefer_base(ctx, run, step, choice.noise, &choice.winner));
   FG_TRY(wrong_basis(ctx, run, step, &choice));
   size_t stand = choice.wrong ? choice.curve : choice.winner;
-  fg_engine_serial_word word;
-  FG_TRY(
-      fg_engine_weigh_serial(ctx, run, &step->stand[stand], stand, run->options.accept_p, &word));
+  fg_engine_serial_word word = FG_ENGINE_EFFECT;
+  if (!choice.pair)
+    FG_TRY(
+        fg_engine_weigh_serial(ctx, run, &step->stand[stand], stand, run->options.accept_p, &word));
   size_t serial = fg_engine_serial_candidate(run);
   if (word == FG_ENGINE_EITHER) {
     bool effect;
