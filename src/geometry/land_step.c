@@ -54,7 +54,7 @@ static double fit_lands(const land_list *lands, size_t first, bool oval, double 
 }
 
 fg_land_step fg_land_step_find(const fg_layout *layout) {
-  fg_land_step step = {.chance = 1};
+  fg_land_step step = {.chance = 1, .jump_mm = NAN};
   land_list lands;
   double x[FG_SMALL_MAX], best = INFINITY;
   list_lands(layout, &lands);
@@ -66,6 +66,7 @@ fg_land_step fg_land_step_find(const fg_layout *layout) {
     for (int k = 0; k < 2; k++)
       step.change[k] = x[k] + x[CIRCLE_TERMS + k] / 2;
     step.change[2] = x[2];
+    step.jump_mm = hypot(x[CIRCLE_TERMS], x[CIRCLE_TERMS + 1]);
   }
   double none = fit_lands(&lands, lands.count, false, x), oval = fit_lands(&lands, 0, true, x);
   if (!(best * OVAL_SQUARES < oval)) return step;

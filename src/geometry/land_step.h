@@ -7,6 +7,7 @@
 
 typedef struct fg_land_step {
   double chance;    /* of distances as far from one circle without a jump; 1: no jump was sought */
+  double jump_mm;   /* size of the jump; NaN: none was sought */
   double change[3]; /* of the circle's x, y and radius, if the scan jumps */
 } fg_land_step;
 
