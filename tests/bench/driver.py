@@ -119,6 +119,8 @@ def measure(program, folder, path, spec, words=()):
         os.remove(out)
     command = [program, "measure", path, "-d", os.path.join(folder, "design.json"), "-o", out, "--threads", "1", *words]
     done = subprocess.run(command, capture_output=True, text=True)
+    if "OpenCV cannot be loaded" in done.stderr:
+        raise RuntimeError(done.stderr.strip())  # every disc would count as withheld
     if not os.path.exists(out):
         return None, done.stderr.strip()
     with open(out, encoding="utf-8") as file:
