@@ -36,8 +36,8 @@
 #define SCALE_FACTOR 1.2
 /* Chance of lands that lie as if the scan jumped between two of them, below which they are flagged,
  * and the smallest jump: without noise the edge model itself deviates by 0.1 µm. */
-#define STEP_CHANCE 1e-4
-#define STEP_MIN_MM 0.0005
+#define FLAGGED_JUMP_CHANCE 1e-4
+#define FLAGGED_JUMP_MM     0.0005
 
 bool fg_foil_is_measured(const fg_foil *foil) {
   return !(foil->flags & (FG_FOIL_NOT_MEASURED | FG_FOIL_NOT_THIS_DESIGN));
@@ -253,7 +253,7 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   FG_TRY(fg_land_deviation_find(ctx, layout, &land));
   FG_TRY(fg_fillet_deviation_find(ctx, design, layout, &fillet));
   const fg_land_step jump = fg_land_step_find(layout);
-  bool step = jump.chance < STEP_CHANCE && jump.jump_mm > STEP_MIN_MM;
+  bool step = jump.chance < FLAGGED_JUMP_CHANCE && jump.jump_mm > FLAGGED_JUMP_MM;
   if (land || fillet || step || layout->land_displaced) foil->flags |= FG_FOIL_LAND_DEVIATES;
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }

@@ -23,6 +23,10 @@
 /* Correlation length, in stations, above which an edge is rough. */
 #define ROUGH_STATIONS 3.0
 
+/* Chance of lands as if the scan jumped, below which u holds the jump: of foils without one 1 in
+ * 100 may seem to have it, and it costs them uncertainty. */
+#define JUMP_CHANCE 0.01
+
 /* Unit vectors of a bump: u from O to C, v across. */
 static void bump_axes(const fg_layout *layout, const fg_arc *arc, double axes[2][2]) {
   double dx = arc->circle.x - layout->overall.circle.x;
@@ -164,13 +168,10 @@ static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
   return n;
 }
 
-/* Of foils without a jump 1 in 100 may seem to have one: it costs them uncertainty. */
-#define STEP_CHANCE 0.01
-
 /* Adds what the overall circle changes by if the scan jumps between two lands. */
 static void add_land_step(fg_layout *layout) {
   const fg_land_step step = fg_land_step_find(layout);
-  for (int p = 0; step.chance < STEP_CHANCE && p < 3; p++)
+  for (int p = 0; step.chance < JUMP_CHANCE && p < 3; p++)
     for (int q = 0; q < 3; q++)
       layout->overall.covariance[p][q] += step.change[p] * step.change[q];
 }

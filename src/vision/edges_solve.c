@@ -3,7 +3,6 @@
 #include "vision/edge_work.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "core/parallel.h"
 
