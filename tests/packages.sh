@@ -5,8 +5,8 @@
 FOILGAUGE_PACKAGES="build-essential cmake pkg-config libpng-dev libisal-dev libtiff-dev libjpeg-dev libgsl-dev libcjson-dev nettle-dev libcsv-dev
 libopencv-core-dev libopencv-imgproc-dev libsuitesparse-dev libsundials-dev libsqlite3-dev libmicrohttpd-dev libcurl4-openssl-dev libcmocka-dev"
 
-# Only the comparisons need these: what a user would write in Python instead.
-FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"
+# Only the comparisons need these: what a user would write in Python instead, and another reader of PNG.
+FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv libspng-dev"
 
 # Only the long tests need them: regression is compared with R's, and the loop is tried on tables that come with R.
 FOILGAUGE_R_PACKAGES="r-base-core r-cran-mass r-cran-lattice r-cran-boot r-cran-nlme r-cran-lme4 r-cran-pbkrtest"

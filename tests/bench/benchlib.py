@@ -4,7 +4,9 @@
 import json
 import os
 import platform
+import resource
 import subprocess
+import time
 
 import numpy as np
 
@@ -207,6 +209,33 @@ def machine():
     except (OSError, StopIteration):
         pass
     return f"{os.cpu_count()} cores, {model}, Linux {platform.release().split('-')[0]}"
+
+
+class MachineLoad:
+    """Use of the machine by others since this was made: what all processors did, without this process and its children."""
+
+    def __init__(self):
+        self.began = time.monotonic()
+        self.busy, self.stolen = self.ticks()
+        self.own = self.own_seconds()
+
+    @staticmethod
+    def ticks():
+        """Seconds of all processors: busy (user, nice, system, interrupts) and stolen by the host."""
+        with open("/proc/stat", encoding="ascii") as file:
+            columns = [int(text) / os.sysconf("SC_CLK_TCK") for text in file.readline().split()[1:9]]
+        return columns[0] + columns[1] + columns[2] + columns[5] + columns[6], columns[7]
+
+    @staticmethod
+    def own_seconds():
+        return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+
+    def said(self):
+        busy, stolen = self.ticks()
+        whole = (time.monotonic() - self.began) * os.cpu_count()
+        other = max(0.0, busy - self.busy - (self.own_seconds() - self.own))
+        return (f"Meanwhile other programs took {100 * other / whole:.1f} % of the machine, "
+                f"and its host kept {100 * (stolen - self.stolen) / whole:.1f} % back.")
 
 
 def program_version():

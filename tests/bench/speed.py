@@ -26,17 +26,29 @@ NAMES = {
     "opencv": "OpenCV + SciPy",
 }
 PEERS = ("skimage", "opencv")
+READERS = {
+    "read": "libpng",
+    "spng": "libspng",
+    "opencv_read": "OpenCV's imread",
+    "skimage_read": "scikit-image's imread",
+}
+PYTHON_READERS = ("opencv_read", "skimage_read")  # the seconds of the call alone: a process would be Python's start
 PEER_REPETITIONS = 5  # of a second each: they need no more to be told apart
 
 
 def commands(scan, design, out):
     python = "/usr/bin/python3"
+    read_in_python = [python, os.path.join(HERE, "read_python.py")]
+    spng = [os.path.join(TOOLS, "read_spng"), scan]
     return {
         "read": [os.path.join(TOOLS, "read_png"), scan],
         "foilgauge": [benchlib.FOILGAUGE, "measure", scan, "--design", design, "-o", out],
         "one_core": [benchlib.FOILGAUGE, "measure", scan, "--design", design, "-o", out, "--threads", "1"],
         "skimage": [python, os.path.join(HERE, "peer_skimage.py"), scan, "--design", design],
         "opencv": [python, os.path.join(HERE, "peer_opencv.py"), scan, "--design", design],
+        **({"spng": spng} if os.path.exists(spng[0]) else {}),
+        "opencv_read": read_in_python + ["opencv", scan],
+        "skimage_read": read_in_python + ["skimage", scan],
     }
 
 
@@ -53,6 +65,12 @@ def run_once(command, folder):
     with open(result, encoding="ascii") as file:
         wall, user, system, peak, code = file.read().split()
     return float(wall), float(user) + float(system), float(peak) / 1024, int(code)
+
+
+def call_seconds(folder):
+    """Of a reader in Python, which prints them."""
+    with open(os.path.join(folder, "stdout"), encoding="ascii") as file:
+        return float(file.read())
 
 
 def report_of(name, folder, out):
@@ -75,15 +93,17 @@ def measure_scan(scan, repetitions, folder):
     foils = {}
     for repetition in range(repetitions + 1):
         for name in list(todo)[:: 1 if repetition % 2 else -1]:
-            if name in PEERS and repetition > PEER_REPETITIONS:
+            if name in PEERS + PYTHON_READERS and repetition > PEER_REPETITIONS:
                 continue
             cost = run_once(todo[name], folder)
+            if name in PYTHON_READERS:
+                cost = (call_seconds(folder), *cost[1:])
             # 1 of foilgauge says `out of tolerance`: a measurement like any other.
             if cost[3] > (1 if name in ("foilgauge", "one_core") else 0):
-                sys.exit(f"speed.py: {NAMES[name]} failed on {scan} (exit code {cost[3]})")
+                sys.exit(f"speed.py: {NAMES.get(name) or READERS[name]} failed on {scan} (exit code {cost[3]})")
             if repetition:
                 costs[name].append(cost)
-            elif name != "read":
+            elif name not in READERS:
                 foils[name] = report_of(name, folder, out)
     wrong = {name: benchlib.errors(foil, truth) if foil else None for name, foil in foils.items()}
     return {"scan": os.path.basename(scan), "costs": costs, "errors": wrong, "effects": truth["effects"]}
@@ -113,6 +133,17 @@ def time_rows(results):
             ]
 
 
+def reader_rows(results):
+    for name, words in READERS.items():
+        if name not in results[0]["costs"]:
+            yield [words, "not installed"] + [""] * 3
+            continue
+        own = [statistics.median(c[0] for c in result["costs"][name]) for result in results]
+        cells = [[r for result in results for r in pair_ratios(result, measure, name)] for measure in ("foilgauge", "one_core")]
+        ratio_of_libpng = [r for result in results for r in pair_ratios(result, name, "read")]
+        yield [words, f"{min(own):.3f} to {max(own):.3f}", f"{statistics.median(ratio_of_libpng):.2f}"] + [spread(c, 2) for c in cells]
+
+
 def accuracy_rows(results):
     for result in results:
         for name in ("foilgauge", *PEERS):
@@ -136,7 +167,7 @@ def error_ratio(results, name):
     return math.exp(sum(logs) / len(logs)) if logs else float("nan")
 
 
-def write_markdown(path, results, repetitions, command):
+def write_markdown(path, results, repetitions, command, load):
     ratios = {
         name: [r for result in results for r in pair_ratios(result, name, "foilgauge")]
         for name in PEERS
@@ -153,7 +184,7 @@ def write_markdown(path, results, repetitions, command):
             f"Every scan is measured {repetitions} times by each in turn ({PEER_REPETITIONS} times by the peers), in\n"
             "alternating order, after one round that warms the page cache. Each run is a process of its own, start-up included;\n"
             "foilgauge writes its JSON report, reading alone keeps nothing. Ratios are formed pair by\n"
-            "pair within a repetition. Median (lowest–highest).\n\n"
+            f"pair within a repetition. Median (lowest–highest). {load}\n\n"
             f"- foilgauge against reading alone: median {statistics.median(reading):.2f} × the wall time, on one core "
             f"{statistics.median(one_core):.2f} ×; peak memory {peak:.0f} MiB\n"
             + "".join(
@@ -162,8 +193,17 @@ def write_markdown(path, results, repetitions, command):
                 "without scanner effects)\n"
                 for name, values in ratios.items()
             )
-            + "\n## Time and memory\n\n"
+            + "\n## Beside reading alone\n\n"
+            "The readers keep nothing; of those in Python the call alone is timed, without the start of Python and its modules.\n"
+            "Medians of the scans, and foilgauge's wall time as a multiple of the reader's.\n\n"
         )
+        out.write(
+            benchlib.table(
+                ["reader", "wall s", "× libpng", "foilgauge, × reader", "on one core, × reader"],
+                reader_rows(results),
+            )
+        )
+        out.write("\n## Time and memory\n\n")
         out.write(
             benchlib.table(
                 ["scan", "what", "wall s", "CPU s", "peak MiB", "× reading", "× foilgauge"],
@@ -208,12 +248,13 @@ def main():
         sys.exit("speed.py: no scan with a *.truth.json beside it")
     os.makedirs(options.out, exist_ok=True)
     results = []
+    load = benchlib.MachineLoad()
     with tempfile.TemporaryDirectory() as folder:
         for scan in scans:
             print(f"timing {os.path.basename(scan)}", flush=True)
             results.append(measure_scan(scan, options.repetitions, folder))
     write_markdown(
-        os.path.join(options.out, "speed.md"), results, options.repetitions, "tests/bench/speed.sh"
+        os.path.join(options.out, "speed.md"), results, options.repetitions, "tests/bench/speed.sh", load.said()
     )
     write_csv(os.path.join(options.out, "speed.csv"), results)
     print(f"wrote {os.path.relpath(options.out)}/speed.md and speed.csv")
