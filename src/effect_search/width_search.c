@@ -12,6 +12,7 @@
 #include "core/spread.h"
 #include "effect/columns.h"
 #include "effect/midline.h"
+#include "effect_search/shape_noise.h"
 
 /* P-value of a claim: one test per effect, in every scan that is ever measured. */
 #define CHANCE 0.001
@@ -282,11 +283,44 @@ static double change_by_place_error(const width_fit *f, size_t e, size_t axis) {
   return sum;
 }
 
+/* Returns the variance of an effect by the noise of one view's shape. */
+static double find_view_shape_variance(const width_fit *f, size_t e, size_t view) {
+  const fg_edge_fit_view *v = &f->edge_fit->views[view];
+  if (!v->foil || v->held_out) return 0;
+  double px_mm = 25.4 / sqrt(v->measurement->dpi[0] * v->measurement->dpi[1]);
+  double noise_um2_mm = fg_shape_noise_um2_mm(&v->foil->strip, px_mm);
+  double change[FG_SHAPE_FUNCTIONS] = {0},
+         values[FG_SHAPE_FUNCTIONS + 1] = {[FG_SHAPE_FUNCTIONS] = 1};
+  double unused[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], variance = 0;
+  fg_normal_equations shape;
+  fg_normal_clear(&shape, FG_SHAPE_FUNCTIONS + 1);
+  for (size_t i = 0; i < f->count; i++) {
+    if (f->rows[i].view != view) continue;
+    width_row r = beside(f, &f->rows[i]);
+    const fg_edge_fit_row *row = &f->edge_fit->rows[r.row];
+    double share = 0;
+    fg_shape_functions(row->normal_rad, r.place, values);
+    fg_normal_add(&shape, values, 0, row->weight * v->foil->strip.step_mm);
+    for (size_t c = 0; c < f->unknowns && r.weight > 0; c++)
+      share += f->inverse[e][c] * r.weight * r.column[c];
+    for (size_t a = 0; a < FG_SHAPE_FUNCTIONS; a++)
+      change[a] += share * values[a];
+  }
+  if (!fg_normal_solve(&shape, 0, unused, inverse)) return 0;
+  for (size_t a = 0; a < FG_SHAPE_FUNCTIONS; a++)
+    for (size_t b = 0; b < FG_SHAPE_FUNCTIONS; b++)
+      variance += change[a] * inverse[a][b] * change[b];
+  return noise_um2_mm * variance;
+}
+
 /* ---- claims ---- */
 
 static double find_u(const width_fit *f, size_t e, double variance) {
   double place = PLACE_UM * hypot(change_by_place_error(f, e, 0), change_by_place_error(f, e, 1));
-  return sqrt(variance + place * place);
+  double square = variance + place * place;
+  for (size_t v = 0; v < f->edge_fit->view_count; v++)
+    square += find_view_shape_variance(f, e, v);
+  return sqrt(square);
 }
 
 static double find_p(const width_fit *f, size_t e, double variance, size_t groups) {

@@ -23,6 +23,7 @@ GROUPS = {
     "ideal": ("noise, blur, both polarities, 8 and 16 bits", {0: 20, 1: 10, 2: 10, 4: 10, 6: 10}),
     "shaded": ("also a gamma curve, shading over the glass, flare", {0: 10}),
     "rough": ("the scanner of samples/render/rough.json", {0: 10, 6: 10}),
+    "coarse": ("1200 dpi, where a strip is some three blurs wide, and noise of 1 to 3", {0: 40, 10: 20}),
 }
 HEAD = """# A thickness that changes along the foil
 
@@ -30,7 +31,8 @@ HEAD = """# A thickness that changes along the foil
 reports say `part.thickness_taper`; other claims: whatever else they say. Error and U = 2u are of the change from end to end,
 over the renders where it is claimed. Shows from: the smallest change that the others say would have shown, median. U is
 never below what an error of the edge model over the place on the glass would make of it (`PLACE_UM` in
-src/effect_search/width_search.c), which one scan cannot tell from a taper.
+src/effect_search/width_search.c), which one scan cannot tell from a taper, and holds what pixels' noise makes of the strip's
+level and blur, which few blurs of width hardly tell from the width (src/effect_search/shape_noise.h).
 
 | renders | change, µm | scans | claimed | other claims | error within U | median error, µm | mean error, µm | median U, µm | shows from, µm |
 |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|
@@ -50,6 +52,8 @@ def draw_scanner(rng, group):
     if group == "rough":
         return json.loads((ROOT / "samples/render/rough.json").read_text())["scanner"]
     scanner = draw_ideal(rng)
+    if group == "coarse":
+        scanner.update(dpi=1200, blur_px=rng.uniform(1.2, 1.6), noise=rng.uniform(1, 3))
     if group == "shaded":
         scanner["gamma"] = math.exp(rng.uniform(math.log(0.6), math.log(1.8)))
         scanner["shading"] = {axis: rng.uniform(-0.04, 0.04) for axis in ("x", "y", "quadratic")}
