@@ -282,6 +282,13 @@ fg_status fg_file_open(fg_context *ctx, const char *path, FILE **stream) {
                  strerror(errno), errno == ENOMEM ? "close other programs" : "check the name");
 }
 
+fg_status fg_file_open_to_append(fg_context *ctx, const char *path, FILE **stream) {
+  *stream = fopen(path, "a+e");
+  if (!*stream) return fg_output_fail(ctx, path, errno);
+  rewind(*stream); /* where reading begins is not defined */
+  return FG_OK;
+}
+
 fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char **text) {
   FILE *stream;
   *text = NULL;

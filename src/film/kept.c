@@ -136,7 +136,7 @@ static fg_status begin_part(fg_context *ctx, const char *sum, fg_film_kept *kept
   fseek(kept->file, 0, SEEK_END);
   if (fprintf(kept->file, "%s%s%s\n", cut ? "\n" : "", heading, sum) > 0 && fflush(kept->file) == 0)
     return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
+  return fg_output_fail(ctx, kept->path, errno);
 }
 
 fg_status fg_film_kept_open(fg_context *ctx, const fg_film_report *report,
@@ -151,14 +151,9 @@ fg_status fg_film_kept_open(fg_context *ctx, const fg_film_report *report,
   pthread_mutex_init(&kept->lock, NULL);
   if (!kept->path) return FG_OK;
   sum_up(report, perfect, stock, sum);
-  kept->file = fopen(kept->path, "a+");
-  if (!kept->file) {
-    status = fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
-  } else {
-    rewind(kept->file);
-    status = read_kept(ctx, kept->file, sum, draws, kept);
-    if (status == FG_OK) status = begin_part(ctx, sum, kept);
-  }
+  status = fg_file_open_to_append(ctx, kept->path, &kept->file);
+  if (status == FG_OK) status = read_kept(ctx, kept->file, sum, draws, kept);
+  if (status == FG_OK) status = begin_part(ctx, sum, kept);
   if (status != FG_OK) {
     fg_context unused;
     fg_film_kept_close(&unused, kept);
@@ -178,7 +173,7 @@ fg_status fg_film_kept_add(fg_context *ctx, fg_film_kept *kept, const fg_film_re
   fputc('\n', kept->file);
   bool fine = fflush(kept->file) == 0 && !ferror(kept->file);
   pthread_mutex_unlock(&kept->lock);
-  return fine ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
+  return fine ? FG_OK : fg_output_fail(ctx, kept->path, errno);
 }
 
 fg_status fg_film_kept_close(fg_context *ctx, fg_film_kept *kept) {
@@ -186,5 +181,5 @@ fg_status fg_film_kept_close(fg_context *ctx, fg_film_kept *kept) {
   pthread_mutex_destroy(&kept->lock);
   free(kept->known);
   kept->known = NULL;
-  return fine ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
+  return fine ? FG_OK : fg_output_fail(ctx, kept->path, errno);
 }
