@@ -246,19 +246,18 @@ static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
 /* A plate whose cause has no name corrects other scans by a map: its curve alone would not hold
  * what the picture does beside it. */
 static fg_status find_map(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
-                          const fg_evidence_verdict *v) {
+                          const fg_evidence_verdict *v, const fg_evidence_window *window) {
   fg_field_map_free(&loop->map);
   if (!loop->edge_fit.discs || v->outcome != FG_EVIDENCE_UNATTRIBUTED) return FG_OK;
-  return fg_evidence_find_map(ctx, search, &loop->displacement, &loop->map);
+  return fg_evidence_find_map(ctx, search, window, &loop->displacement, &loop->map);
 }
 
 static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
-                                   const fg_evidence_verdict *v) {
-  const fg_evidence_model *found = v->outcome == FG_EVIDENCE_FOUND ? &v->tie[0] : NULL;
+                                   const fg_evidence_window *window) {
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->displacement_parts));
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->unseen_parts));
   if (!loop->edge_fit.discs) FG_TRY(fg_evidence_find_unseen(ctx, search, loop->unseen_parts));
-  return fg_evidence_find_displacement(ctx, search, found, &loop->displacement,
+  return fg_evidence_find_displacement(ctx, search, window, &loop->displacement,
                                        loop->displacement_parts);
 }
 
@@ -388,6 +387,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
                             seed_list *seeds, bool first, bool *moved) {
   fg_evidence_search search = {.count = 0};
   fg_evidence_verdict verdict;
+  fg_evidence_window window;
   fg_status status = FG_OK;
   seeds->set[0] = loop->set;
   fg_edge_fit_hold_radii(&loop->edge_fit, true);
@@ -404,10 +404,12 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   loop->edge_error_um = search.problem.error_um;
   loop->margin = verdict.margin;
   loop->beside_foil_field = fg_scan_loop_is_beside_foil_field(&loop->edge_fit, &verdict);
-  FG_TRY_EXIT(find_displacement(ctx, loop, &search, &verdict));
+  FG_TRY_EXIT(fg_evidence_list_window(
+      ctx, &search, verdict.outcome == FG_EVIDENCE_FOUND ? &verdict.tie[0] : NULL, &window));
+  FG_TRY_EXIT(find_displacement(ctx, loop, &search, &window));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
   FG_TRY_EXIT(take_what_fits(ctx, loop, &search, &verdict, moved));
-  FG_TRY_EXIT(find_map(ctx, loop, &search, &verdict));
+  FG_TRY_EXIT(find_map(ctx, loop, &search, &verdict, &window));
   *moved = *moved && search.problem.large;
 exit:
   fg_evidence_search_close(&search);

@@ -122,8 +122,7 @@ static fg_status find_in_order_file(fg_context *ctx, const char *path, const cha
   char sum[65];
   FG_TRY(fg_table_load_words(ctx, path, &table, sum));
   size_t row = find_order_row(&table, number);
-  fg_status status =
-      row < table.rows ? read_order_cells(ctx, path, &table, row, order) : FG_OK;
+  fg_status status = row < table.rows ? read_order_cells(ctx, path, &table, row, order) : FG_OK;
   fg_table_free(&table);
   return status;
 }
