@@ -114,7 +114,7 @@ static fg_status find_limits(fg_context *ctx, fg_film_report *r, fg_film_workspa
 
 fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   fg_film_mark solved;
-  if (r->at.outcome != FG_FILM_SOLVED) return FG_OK;
+  if (r->actual.outcome != FG_FILM_SOLVED) return FG_OK;
   FG_TRY(fg_film_mark_open(ctx, workspace, &solved));
   fg_status status = find_limits(ctx, r, workspace, &solved);
   fg_film_mark_close(&solved);
