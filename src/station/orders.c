@@ -98,7 +98,7 @@ static size_t find_order_row(const fg_table *table, const char *number) {
   return found;
 }
 
-/* Text that is too long is refused, not cut: what is cut names another lot or die. */
+/* Text that is too long is refused, not cut: a shorter one could be the name of another lot. */
 static fg_status read_order_cells(fg_context *ctx, const char *path, const fg_table *table,
                                   size_t row, fg_order *order) {
   const fg_column *pieces = find_order_column(table, "pieces", "quantity");
