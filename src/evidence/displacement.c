@@ -90,11 +90,11 @@ fg_status fg_evidence_list_window(fg_context *ctx, fg_evidence_search *s,
   for (size_t m = 0; m < s->count && w->count < FG_EVIDENCE_WINDOW; m++) {
     const fg_evidence_model *model = &s->models[m];
     double below = w->count ? per_nat * (w->model[0]->score - model->score) : 0;
-    bool bears;
+    bool defined;
     if (below > log(1 / WEIGHT_MIN)) break; /* sorted */
     if (includes_listed(model, w) || (found && !fg_evidence_includes(model, found))) continue;
-    FG_TRY(fg_evidence_leads_bear_names(ctx, s, model, &bears));
-    if (!bears) continue;
+    FG_TRY(fg_evidence_has_defining_columns(ctx, s, model, &defined));
+    if (!defined) continue;
     w->model[w->count] = model;
     total += w->weight[w->count++] = exp(-below);
   }

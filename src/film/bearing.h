@@ -18,7 +18,7 @@ fg_status fg_film_read_foils(fg_context *ctx, fg_film_report *report, fg_film_be
 
 /* Takes clearances and stiffness of a report of `foilgauge stiffness`, which is parsed. */
 struct cJSON;
-fg_status fg_film_take_tested(fg_context *ctx, fg_film_report *report, const struct cJSON *root,
+fg_status fg_film_read_tested(fg_context *ctx, fg_film_report *report, const struct cJSON *root,
                               fg_film_bearing *bearing);
 
 fg_film_mesh fg_film_mesh_of(const fg_film_report *report);

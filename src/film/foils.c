@@ -62,7 +62,7 @@ static fg_status take_foils(fg_context *ctx, fg_film_report *r, const cJSON *roo
   const cJSON *foils = cJSON_GetObjectItemCaseSensitive(root, "foils");
   size_t pads = r->options.pads ? r->options.pads : 1;
   const char *name = cJSON_IsString(schema) ? schema->valuestring : "";
-  if (!strcmp(name, "foilgauge/load_test/1")) return fg_film_take_tested(ctx, r, root, bearing);
+  if (!strcmp(name, "foilgauge/load_test/1")) return fg_film_read_tested(ctx, r, root, bearing);
   if (strcmp(name, "foilgauge/measure/1") != 0)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: not a report of `foilgauge measure` (foilgauge/measure/1), nor of "

@@ -95,7 +95,7 @@ static double bump_stiffness(const fg_film_report *r, const tested_axis *axis) {
   return axis->stiffness_n_mm / (r->length_mm * bumps_per_rad * (reach + sin(reach) * cosine));
 }
 
-fg_status fg_film_take_tested(fg_context *ctx, fg_film_report *r, const cJSON *root,
+fg_status fg_film_read_tested(fg_context *ctx, fg_film_report *r, const cJSON *root,
                               fg_film_bearing *bearing) {
   tested_bearing tested = {.count = 0};
   if (r->options.bore)

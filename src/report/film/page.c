@@ -169,8 +169,8 @@ fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out
   put_orbit(out, r);
   put_sensitivities(out, r);
   put_draws(out, r);
-  if (r->options.foils && !r->draws.foils) fg_provenance_take_file(&from, r->options.foils);
-  if (r->options.bore) fg_provenance_take_file(&from, r->options.bore);
+  if (r->options.foils && !r->draws.foils) fg_provenance_include_file(&from, r->options.foils);
+  if (r->options.bore) fg_provenance_include_file(&from, r->options.bore);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");

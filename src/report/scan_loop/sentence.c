@@ -93,8 +93,8 @@ static void count_kept(const fg_correction_choice *choice, kept *k) {
   if (choice[FG_CORRECTED_RADIUS].reason == FG_CORRECTION_NONE) return;
   k->all++;
   for (int d = 0; d < FG_CORRECTED; d++) {
-    k->left[d] += fg_choice_is_left(&choice[d]);
-    k->tied[d] += fg_choice_is_left(&choice[d]) && choice[d].reason == FG_CORRECTION_TIED;
+    k->left[d] += fg_correction_is_left_out(&choice[d]);
+    k->tied[d] += fg_correction_is_left_out(&choice[d]) && choice[d].reason == FG_CORRECTION_TIED;
   }
 }
 
