@@ -313,7 +313,7 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     read_mesh(run, state, text);
     return 0;
   case ARGP_KEY_ARG:
-    if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
+    if (run->design_path) argp_error(state, "one DESIGN at a time, not also '%s'", text);
     run->design_path = text;
     return 0;
   case ARGP_KEY_END:

@@ -127,7 +127,10 @@ fg_status fg_film_read_bore(fg_context *ctx, fg_film_report *r) {
   fg_text_clip(r->bore_path, sizeof r->bore_path, "%s", r->options.bore);
   fg_status status = fg_table_load(ctx, r->options.bore, &table, r->bore_sha256);
   if (status == FG_OK && !table.rows)
-    status = fg_fail(ctx, FG_ERR_DATA, "%s: no rows", r->options.bore);
+    status = fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: no rows; a profile of the bore has one per direction, with angle_deg and radius_mm",
+        r->options.bore);
   if (status == FG_OK) status = fg_memory_allocate(ctx, table.rows, sizeof(bore_point), &points);
   if (status == FG_OK) status = take_profile(ctx, r, &table, points);
   free(points);

@@ -120,7 +120,8 @@ static fg_status read_draws(fg_context *ctx, const char *sum, fg_film_draws *dra
       continue;
     }
     if (!ours)
-      return fg_fail(ctx, FG_ERR_DATA, "%s: no file that `foilgauge film --keep` wrote",
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: not a file that `foilgauge film --keep` wrote; name another one",
                      file->path);
     if (!read_draw_line(line, &result) || !result.draw || result.draw > draws->count) continue;
     draws->kept += !file->known[result.draw - 1];

@@ -48,7 +48,9 @@ static fg_status read_pad(fg_context *ctx, fg_film_report *r, const cJSON *foil,
     bool fitted = isfinite(clearance);
     if (!fitted && bump) clearance = read_number(bump, "clearance_mm");
     if (!isfinite(clearance))
-      return fg_fail(ctx, FG_ERR_DATA, "%s: bump %zu of foil %zu has no clearance_mm",
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: bump %zu of foil %zu has no clearance_mm, and a film needs all: measure "
+                     "the foil again",
                      r->options.foils, number, pad + 1);
     bearing->clearance_mm[at] = clearance;
     take_u(r, foil, bump, fitted ? "u_clearance_fitted_mm" : "u_clearance_mm", at);

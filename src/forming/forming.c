@@ -228,7 +228,8 @@ static fg_status take_options(fg_context *ctx, const fg_forming_options *options
   if (!own->layers) own->layers = LAYERS;
   if (!own->steps) own->steps = STEPS;
   if (own->layers > MAX || own->steps > MAX)
-    return fg_fail(ctx, FG_ERR_USAGE, "at most %d layers and steps", MAX);
+    return fg_fail(ctx, FG_ERR_USAGE, "%zu layers and %zu steps: at most %d of each", own->layers,
+                   own->steps, MAX);
   if (own->die) {
     forming->die = *own->die;
     own->die = &forming->die;

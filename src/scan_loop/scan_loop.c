@@ -82,7 +82,10 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->edge_fit.row_count; i++)
     rows += !loop->edge_fit.views[loop->edge_fit.rows[i].view].held_out;
   if (rows < ROWS_MIN)
-    return fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects", rows);
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%zu edge rows are too few to look for effects; scan more bumps, or at a higher resolution",
+        rows);
   return FG_OK;
 }
 

@@ -2,6 +2,7 @@
 #include "station/orders.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -108,8 +109,8 @@ static fg_status read_order_cells(fg_context *ctx, const char *path, const fg_ta
     const char *text = column ? get_order_cell(column, row) : "";
     if (strlen(text) >= FG_NAMED_TEXT)
       return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: row %zu, column '%s': at most %d bytes can be kept; this has %zu", path,
-                     row + 1, column->name, FG_NAMED_TEXT - 1, strlen(text));
+                     "%s: row %zu, column '%s': a text of %zu bytes; at most %d can be kept", path,
+                     row + 1, column->name, strlen(text), FG_NAMED_TEXT - 1);
     strcpy((char *)order + columns[i].offset, text);
   }
   if (pieces) order->pieces = strtoll(get_order_cell(pieces, row), NULL, 10);
@@ -140,7 +141,9 @@ static fg_status find_in_folder(fg_context *ctx, const char *path, const char *n
   DIR *folder = opendir(path);
   fg_status status = FG_OK;
   struct stat newest = {0}, about;
-  if (!folder) return fg_fail(ctx, FG_ERR_IO, "%s: the folder of orders cannot be read", path);
+  if (!folder)
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder of orders cannot be read: %s", path,
+                   strerror(errno));
   for (struct dirent *entry; status == FG_OK && (entry = readdir(folder));) {
     size_t length = strlen(entry->d_name);
     char *file = NULL;
