@@ -75,9 +75,10 @@ static fg_status find_stiffness(fg_context *ctx, fg_film_report *r) {
   }
   const fg_stiffness_model *model = fg_film_stiffness_model(o->model);
   if (!model)
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "no model of a bump's stiffness is called '%s'; `foilgauge film --help` lists them",
-                   o->model);
+    return fg_fail(
+        ctx, FG_ERR_USAGE,
+        "no model of a bump's stiffness is called '%s'; `foilgauge film --help` lists them",
+        o->model);
   const fg_design_bumps *bumps = &r->design.bumps;
   const fg_arch arch =
       fg_design_arch(&r->design, r->design.thickness_mm, bumps->radius_mm, bumps->angle_deg);
