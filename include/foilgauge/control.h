@@ -52,12 +52,17 @@ double fg_chart_d2(size_t n);
 fg_status fg_chart_individuals(fg_context *ctx, const double *values, size_t count, unsigned rules,
                                fg_chart *chart);
 
-/* Means of subgroups: `values` in order of subgroup, size[i] of them each (0: left out). The chart
- * of the means, and of the standard deviations (run rule 1 only; subgroups of one are left out of
- * it with NaN); either may be NULL. FG_ERR_DATA when no subgroup has two values. */
-fg_status fg_chart_subgroups(fg_context *ctx, const double *values, const size_t *size,
-                             size_t subgroups, fg_sigma_from from, unsigned rules, fg_chart *means,
-                             fg_chart *deviations);
+typedef struct fg_subgroups {
+  const double *values; /* subgroup after subgroup */
+  const size_t *size;   /* values of each; 0: the subgroup is left out */
+  size_t count;         /* subgroups */
+} fg_subgroups;
+
+/* Chart of the subgroups' means, and of their standard deviations (run rule 1 only; subgroups of
+ * one are left out of it with NaN); either may be NULL. FG_ERR_DATA when no subgroup has two
+ * values. */
+fg_status fg_chart_subgroups(fg_context *ctx, const fg_subgroups *subgroups, fg_sigma_from from,
+                             unsigned rules, fg_chart *means, fg_chart *deviations);
 
 void fg_chart_free(fg_chart *chart);
 
@@ -74,11 +79,11 @@ typedef struct fg_chart_chance {
   bool steady;     /* no more signals than max, no outliers */
 } fg_chart_chance;
 
-/* Judge whether chance alone explains a chart's signals: the chart of a steady process of
+/* Judges whether chance alone explains a chart's signals: the chart of a steady process of
  * independent normal values is called not steady with a probability of about `level` (0.01), half
  * of it by the number of its signals (a negative binomial, as signals of run rules come in runs),
  * half by its farthest point. Outliers are those of rule 1: without that rule there are none.
- * size: as given to fg_chart_subgroups. */
+ * size: of the subgroups. */
 void fg_chart_judge_individuals(const fg_chart *chart, unsigned rules, double level,
                                 fg_chart_chance *chance);
 void fg_chart_judge_deviations(const fg_chart *chart, const size_t *size, unsigned rules,

@@ -40,10 +40,11 @@
 extern "C" {
 #endif
 
-typedef enum fg_film_top {
-  FG_FILM_STIFF,   /* straight from bump to bump */
-  FG_FILM_SAGGING, /* a beam on the bumps */
-} fg_film_top;
+/* The top foil between the bumps, along the rotation. */
+typedef enum fg_film_top_foil {
+  FG_FILM_TOP_FOIL_STIFF,   /* straight from bump to bump */
+  FG_FILM_TOP_FOIL_SAGGING, /* a beam on the bumps */
+} fg_film_top_foil;
 
 enum {
   FG_FILM_FREQUENCIES = 21,
@@ -51,6 +52,26 @@ enum {
   FG_FILM_SPEEDS_MAX = 200,
   FG_FILM_TURNS_MAX = 10000
 };
+
+/* Speeds at which the stability map is solved, in equal ratios. */
+typedef struct fg_film_map_options {
+  double low_rpm, high_rpm; /* NaN: a quarter and four times the bearing's speed */
+  size_t speeds;
+} fg_film_map_options;
+
+/* Bearings drawn at random: with shims of random heights under the bumps, or of a lot's foils. */
+typedef struct fg_film_draw_options {
+  size_t count;                       /* 0: none */
+  double shim_low_pct, shim_high_pct; /* heights, percent of the clearance; NaN: no shims */
+  const char *keep; /* file of solved bearings, which a run goes on from and adds to; NULL: none */
+  size_t shard, shards; /* draws shard - 1, shard - 1 + shards, ... alone; shards 0: all */
+} fg_film_draw_options;
+
+/* Speed at which a coasting rotor was measured to touch down. */
+typedef struct fg_film_lift_off_options {
+  double rpm, u_rpm; /* NaN: not measured */
+  double u_load_n;   /* of the load at that speed */
+} fg_film_lift_off_options;
 
 typedef struct fg_film_options {
   double load_n, load_deg, speed_rpm; /* load_n, speed_rpm above 0 */
@@ -65,32 +86,26 @@ typedef struct fg_film_options {
   size_t pads; /* 0: a closed ring of bumps, without edges */
   size_t bumps_per_pad, first_bump;
   double pitch_deg;
-  fg_film_top top;
-  double top_foil_mm;                   /* NaN: the design's; of a top foil that sags */
-  size_t cells_per_bump, cells_axial;   /* mesh: even; over half the length */
-  double touching_um;                   /* a thinner film touches */
-  double speed_low_rpm, speed_high_rpm; /* of the stability map */
-  size_t speeds;
+  fg_film_top_foil top_foil;
+  double top_foil_mm;                 /* NaN: the design's; of a top foil that sags */
+  size_t cells_per_bump, cells_axial; /* mesh: even; over half the length */
+  double touching_um;                 /* a thinner film touches */
+  fg_film_map_options map;
   /* A report of measured foils, whose order is that of the pads; or the folder of a lot, whose
-   * foils `draws` bearings are drawn from. NULL: as designed. */
+   * foils bearings are drawn from. NULL: as designed. */
   const char *foils;
   const struct fg_film_stock *stock; /* such foils in memory, in place of a folder; NULL: none */
   /* Measured profile of the bore, CSV with angle_deg and radius_mm: its radius less the design's
    * sleeve_radius_mm is added to the clearance. NULL: round, as designed. */
   const char *bore;
-  double lift_off_rpm, u_lift_off_rpm; /* measured, as a rotor coasts down; NaN: not */
-  double u_load_n;                     /* of the load at that speed */
-  size_t draws;                        /* bearings with random shims, or of a lot; 0: none */
-  /* File of drawn bearings that are solved, which a run goes on from and adds to; NULL: none. */
-  const char *keep;
-  size_t shard, shards; /* only draws shard - 1, shard - 1 + shards, ...; shards 0: all */
-  uint64_t seed;
-  double shim_low_pct, shim_high_pct; /* heights of shims, percent of the clearance */
-  unsigned jobs;                      /* threads; 0: all cores */
-  size_t orbit_turns;                 /* of the orbit in time; 0: none */
-  double within_pct;                  /* change of the threshold speed that a tolerance on the
-                                         clearance is asked for; NaN: none is */
-  bool sensitivity;                   /* of the critical mass, over the shape of the bumps */
+  fg_film_lift_off_options lift_off;
+  fg_film_draw_options draw;
+  uint64_t seed;      /* of all random numbers */
+  unsigned jobs;      /* threads; 0: all cores */
+  size_t orbit_turns; /* of the orbit in time; 0: none */
+  double within_pct;  /* change of the threshold speed that a tolerance on the clearance is asked
+                         for; NaN: none is */
+  bool sensitivity;   /* of the critical mass, over the shape of the bumps */
 } fg_film_options;
 
 /* Air at 25 degrees C; table 5.6's loss factor, three pads of seven bumps or of as many as the
@@ -111,14 +126,14 @@ typedef enum fg_film_outcome {
 } fg_film_outcome;
 extern const char *const fg_film_outcome_words[]; /* "solved", "touching", "unsolved", NULL */
 
-/* A bearing's threshold speed against the perfect one's less and plus within_pct. */
-typedef enum fg_film_side {
-  FG_FILM_NOT_ASKED,
-  FG_FILM_NO_FILM, /* or one that touches, at one of both speeds */
-  FG_FILM_BELOW,
-  FG_FILM_WITHIN,
-  FG_FILM_ABOVE,
-} fg_film_side;
+/* A bearing's threshold speed, compared with the perfect one's ± within_pct. */
+typedef enum fg_film_threshold_verdict {
+  FG_FILM_THRESHOLD_NOT_ASKED,
+  FG_FILM_THRESHOLD_NO_FILM, /* or one that touches, at an end of that range */
+  FG_FILM_THRESHOLD_BELOW,
+  FG_FILM_THRESHOLD_WITHIN,
+  FG_FILM_THRESHOLD_ABOVE,
+} fg_film_threshold_verdict;
 
 /* A bearing at one speed and load; NaN where unsolved. */
 typedef struct fg_film_result {
@@ -135,7 +150,7 @@ typedef struct fg_film_result {
   double log_decrement;     /* of the rotor's least stable whirl; NaN: not asked, or none; minus
                                infinite where it falls off its place */
   double mass_over_perfect; /* critical mass over the perfect bearing's; NaN: not asked */
-  fg_film_side side;
+  fg_film_threshold_verdict threshold;
   size_t draw; /* its number, from 1; 0: no drawn bearing */
 } fg_film_result;
 
@@ -281,13 +296,14 @@ typedef struct fg_film_report {
   fg_film_bearing bearing;
   /* Standard uncertainties of its clearances: own, and shared by all bumps; 0: as designed. */
   double u_own_mm[FG_BEARING_BUMPS_MAX], u_shared_mm[FG_BEARING_BUMPS_MAX];
-  fg_film_uncertainty u;
+  fg_film_uncertainty uncertainty;
   fg_film_tolerance tolerance;
-  fg_film_result perfect, at; /* of the design; of the bearing, the same without foils */
-  fg_film_coefficients frequency[FG_FILM_FREQUENCIES];
-  size_t frequencies; /* 0 where unsolved */
-  fg_film_result *speed;
-  size_t speeds;
+  fg_film_result perfect; /* the bearing as designed */
+  fg_film_result actual;  /* with its measured foils and bore; without them the perfect one */
+  fg_film_coefficients coefficients[FG_FILM_FREQUENCIES]; /* by frequency of whirl */
+  size_t coefficient_count;                               /* 0 where unsolved */
+  fg_film_result *by_speed;                               /* of the stability map; owned */
+  size_t speed_count;
   double threshold_rpm;             /* NaN: not within the speeds */
   double threshold_eigen_rpm;       /* by the least stable eigenvalue; NaN likewise */
   fg_film_mode mode[FG_FILM_MODES]; /* at this speed, the least stable one first */
@@ -312,7 +328,8 @@ typedef struct fg_film_report {
   size_t sensitivities; /* 0: not asked */
 } fg_film_report;
 
-/* Solves. FG_ERR_DATA for a design without bumps or a bearing without clearance, FG_ERR_USAGE for
+/* Solves the film of the bearing as designed and as measured, and what else the options ask for.
+ * FG_ERR_DATA for a design without bumps or a bearing without clearance, FG_ERR_USAGE for
  * options that contradict each other, FG_ERR_NUMERIC when the perfect bearing has no film at this
  * load. */
 fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_options *options,

@@ -110,7 +110,7 @@ static error_t parse_design_option(int key, char *text, struct argp_state *state
   case OPTION_SHEET:
     return parse_sheet(text, &arguments->sheet, state);
   case ARGP_KEY_ARG:
-    if (arguments->design_path) argp_error(state, "more than one DESIGN: %s", text);
+    if (arguments->design_path) argp_error(state, "one DESIGN at a time, not also '%s'", text);
     arguments->design_path = text;
     break;
   case ARGP_KEY_END:

@@ -103,7 +103,7 @@ static const char doc[] =
 
 static void add_next_lot(next_run *run, const char *folder, struct argp_state *state) {
   if (run->request.lot_count == FG_COMPENSATION_SETS)
-    argp_error(state, "--lot: at most %d", FG_COMPENSATION_SETS);
+    argp_error(state, "--lot: at most %d lots", FG_COMPENSATION_SETS);
   run->lots[run->request.lot_count++].folder = folder;
 }
 

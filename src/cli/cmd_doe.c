@@ -139,7 +139,7 @@ static void parse_code(struct argp_state *state, const char *text, doe_arguments
     a->options.uncoded = true;
     return;
   }
-  if (a->options.codings == CODINGS) argp_error(state, "too many --code");
+  if (a->options.codings == CODINGS) argp_error(state, "--code: at most %d", CODINGS);
   if (fg_coding_parse(&ctx, text, &a->coding[a->options.codings]) != FG_OK)
     argp_error(state, "--code: %s", ctx.message);
   for (size_t i = 0; i < a->options.codings; i++)
@@ -169,18 +169,18 @@ static void parse_goal(struct argp_state *state, const char *text, doe_arguments
 
 static void parse_constraint(struct argp_state *state, const char *text, doe_arguments *a) {
   if (a->options.constraints == FG_REGION_PLANES)
-    argp_error(state, "--constraint: %d are possible", FG_REGION_PLANES);
+    argp_error(state, "--constraint: at most %d", FG_REGION_PLANES);
   a->constraint[a->options.constraints++] = text;
 }
 
 static void parse_at(struct argp_state *state, const char *text, doe_arguments *a) {
-  if (a->options.ats == SETTINGS) argp_error(state, "--at: %d are possible", SETTINGS);
+  if (a->options.ats == SETTINGS) argp_error(state, "--at: at most %d", SETTINGS);
   a->at[a->options.ats++] = text;
 }
 
 static void parse_round(struct argp_state *state, const char *text, doe_arguments *a) {
   fg_context ctx = {0};
-  if (a->options.rounds == CODINGS) argp_error(state, "too many --round");
+  if (a->options.rounds == CODINGS) argp_error(state, "--round: at most %d", CODINGS);
   if (fg_rounding_parse(&ctx, text, &a->round[a->options.rounds]) != FG_OK)
     argp_error(state, "--round: %s", ctx.message);
   a->options.rounds++;
@@ -238,7 +238,7 @@ static error_t parse_doe_option(int key, char *text, struct argp_state *state) {
     parse_round(state, text, a);
     break;
   case ARGP_KEY_ARG:
-    if (a->data) argp_error(state, "more than one DATA.csv: %s", text);
+    if (a->data) argp_error(state, "one DATA.csv at a time, not also '%s'", text);
     a->data = text;
     break;
   case ARGP_KEY_END:

@@ -86,14 +86,15 @@ static const char doc[] =
     "@exit_done@";
 
 static void add_text(struct argp_state *state, const char **list, size_t *count, const char *text) {
-  if (*count == FG_PLAN_FACTORS) argp_error(state, "more than %d: %s", FG_PLAN_FACTORS, text);
+  if (*count == FG_PLAN_FACTORS)
+    argp_error(state, "at most %d of one option; '%s' is too many", FG_PLAN_FACTORS, text);
   list[(*count)++] = text;
 }
 
 static void parse_factor(struct argp_state *state, const char *text, plan_arguments *a) {
   fg_context ctx = {0};
   size_t place = a->options.factors;
-  if (place == FG_PLAN_FACTORS) argp_error(state, "more than %d factors", FG_PLAN_FACTORS);
+  if (place == FG_PLAN_FACTORS) argp_error(state, "--factor: at most %d", FG_PLAN_FACTORS);
   if (fg_coding_parse(&ctx, text, &a->coding[place]) != FG_OK)
     argp_error(state, "--factor: %s", ctx.message);
   a->options.factors++;
@@ -101,7 +102,7 @@ static void parse_factor(struct argp_state *state, const char *text, plan_argume
 
 static void parse_round(struct argp_state *state, const char *text, plan_arguments *a) {
   fg_context ctx = {0};
-  if (a->rounds == FG_PLAN_FACTORS) argp_error(state, "more than %d --round", FG_PLAN_FACTORS);
+  if (a->rounds == FG_PLAN_FACTORS) argp_error(state, "--round: at most %d", FG_PLAN_FACTORS);
   if (fg_rounding_parse(&ctx, text, &a->round[a->rounds]) != FG_OK)
     argp_error(state, "--round: %s", ctx.message);
   a->rounds++;
@@ -175,7 +176,7 @@ static error_t parse_plan_option(int key, char *text, struct argp_state *state) 
     parse_round(state, text, a);
     break;
   case ARGP_KEY_ARG:
-    argp_error(state, "what is '%s'? factors are given as --factor NAME=LOW:HIGH", text);
+    argp_error(state, "'%s' is no option; factors are given as --factor NAME=LOW:HIGH", text);
     break;
   case ARGP_KEY_END:
     if (!a->options.factors) argp_error(state, "no --factor was given");

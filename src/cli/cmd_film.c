@@ -194,17 +194,17 @@ static void read_speeds(film_run *run, struct argp_state *state, const char *tex
     argp_error(state, "--speeds: '%s' is not LOW:HIGH or LOW:HIGH:N, rpm", text);
   if (count == 3 && !(n[2] >= 2 && n[2] <= FG_FILM_SPEEDS_MAX && n[2] == floor(n[2])))
     argp_error(state, "--speeds: N must be a whole number from 2 to %d", FG_FILM_SPEEDS_MAX);
-  run->options.speed_low_rpm = n[0];
-  run->options.speed_high_rpm = n[1];
-  if (count == 3) run->options.speeds = (size_t)n[2];
+  run->options.map.low_rpm = n[0];
+  run->options.map.high_rpm = n[1];
+  if (count == 3) run->options.map.speeds = (size_t)n[2];
 }
 
 static void read_shims(film_run *run, struct argp_state *state, const char *text) {
   double n[3];
   if (split_numbers(text, ':', n) != 2 || !(n[1] >= n[0]))
     argp_error(state, "--shims: '%s' is not LOW:HIGH, percent of the clearance", text);
-  run->options.shim_low_pct = n[0];
-  run->options.shim_high_pct = n[1];
+  run->options.draw.shim_low_pct = n[0];
+  run->options.draw.shim_high_pct = n[1];
 }
 
 static void read_mesh(film_run *run, struct argp_state *state, const char *text) {
@@ -220,26 +220,28 @@ static void read_mesh(film_run *run, struct argp_state *state, const char *text)
 }
 
 static void take_film_shard(film_run *run, fg_lot_shard shard) {
-  run->options.shard = shard.index;
-  run->options.shards = shard.count;
+  run->options.draw.shard = shard.index;
+  run->options.draw.shards = shard.count;
 }
 
 static void check_film_end(film_run *run, struct argp_state *state) {
   fg_film_options *o = &run->options;
   if (!isfinite(o->load_n) || !isfinite(o->speed_rpm))
     argp_error(state, "a film needs --load N and --speed RPM");
-  bool shims = isfinite(o->shim_low_pct), lot = fg_film_draws_from_lot(o);
-  if (!shims && !lot && (o->draws || run->outputs.path[OUT_DRAWS]))
+  bool shims = isfinite(o->draw.shim_low_pct), lot = fg_film_draws_from_lot(o);
+  if (!shims && !lot && (o->draw.count || run->outputs.path[OUT_DRAWS]))
     argp_error(state,
                "--draws and --draws-out need --shims LOW:HIGH, or --foils with a lot's folder");
   if (shims && lot)
     argp_error(state, "--shims and a lot's foils: bearings are drawn of one of them");
-  if ((shims || lot) && !o->draws) o->draws = 1000;
-  if (o->shards && !o->keep) argp_error(state, "--shard needs --keep FILE");
-  if (o->keep && !o->draws) argp_error(state, "--keep is of drawn bearings: --shims, or a lot");
-  if (o->u_lift_off_rpm > 0 && isnan(o->lift_off_rpm))
+  if ((shims || lot) && !o->draw.count) o->draw.count = 1000;
+  if (o->draw.shards && !o->draw.keep) argp_error(state, "--shard needs --keep FILE");
+  if (o->draw.keep && !o->draw.count)
+    argp_error(state, "--keep is of drawn bearings: --shims, or a lot");
+  if (o->lift_off.u_rpm > 0 && isnan(o->lift_off.rpm))
     argp_error(state, "--u-lift-off is of --lift-off RPM");
-  if (o->u_load_n > 0 && isnan(o->lift_off_rpm)) argp_error(state, "--u-load is of --lift-off RPM");
+  if (o->lift_off.u_load_n > 0 && isnan(o->lift_off.rpm))
+    argp_error(state, "--u-load is of --lift-off RPM");
   if (run->outputs.path[OUT_ORBIT] && !o->orbit_turns)
     argp_error(state, "--orbit-out needs --orbit TURNS");
   if (isfinite(o->compliance) && o->model)
@@ -263,14 +265,14 @@ static const fg_cli_value values[] = {
     FG_CLI_NUMBER(OPTION_VISCOSITY, film_run, options.viscosity_upa_s, 1, 1000),
     FG_CLI_NUMBER(OPTION_AMBIENT, film_run, options.ambient_kpa, 5, 50000),
     FG_CLI_NUMBER(OPTION_WITHIN, film_run, options.within_pct, 0.1, 100),
-    FG_CLI_NUMBER(OPTION_LIFT_OFF, film_run, options.lift_off_rpm, 1, 2e6),
-    FG_CLI_NUMBER(OPTION_U_LIFT_OFF, film_run, options.u_lift_off_rpm, 0, 2e6),
-    FG_CLI_NUMBER(OPTION_U_LOAD, film_run, options.u_load_n, 0, 1e6),
+    FG_CLI_NUMBER(OPTION_LIFT_OFF, film_run, options.lift_off.rpm, 1, 2e6),
+    FG_CLI_NUMBER(OPTION_U_LIFT_OFF, film_run, options.lift_off.u_rpm, 0, 2e6),
+    FG_CLI_NUMBER(OPTION_U_LOAD, film_run, options.lift_off.u_load_n, 0, 1e6),
     FG_CLI_NUMBER(OPTION_TOUCHING, film_run, options.touching_um, 0, 1000),
     FG_CLI_NUMBER(OPTION_PADS, film_run, options.pads, 0, FG_BEARING_BUMPS_MAX),
     FG_CLI_NUMBER(OPTION_BUMPS, film_run, options.bumps_per_pad, 1, FG_BEARING_BUMPS_MAX),
     FG_CLI_NUMBER(OPTION_FIRST, film_run, options.first_bump, 1, 1000),
-    FG_CLI_NUMBER(OPTION_DRAWS, film_run, options.draws, 1, 1e7),
+    FG_CLI_NUMBER(OPTION_DRAWS, film_run, options.draw.count, 1, 1e7),
     FG_CLI_NUMBER(OPTION_ORBIT, film_run, options.orbit_turns, 4, FG_FILM_TURNS_MAX),
     FG_CLI_NUMBER(OPTION_SEED, film_run, options.seed, 0, 9007199254740992.0),
     FG_CLI_NUMBER(OPTION_JOBS, film_run, options.jobs, 1, 4096),
@@ -282,7 +284,7 @@ static const fg_cli_value values[] = {
     FG_CLI_VALUE(OPTION_ORBIT_OUT, film_run, outputs.path[OUT_ORBIT]),
     FG_CLI_VALUE(OPTION_FOILS, film_run, options.foils),
     FG_CLI_VALUE(OPTION_BORE, film_run, options.bore),
-    FG_CLI_VALUE(OPTION_KEEP, film_run, options.keep),
+    FG_CLI_VALUE(OPTION_KEEP, film_run, options.draw.keep),
     FG_CLI_VALUE(OPTION_MODEL, film_run, options.model),
     FG_CLI_VALUE(OPTION_SENSITIVITY, film_run, options.sensitivity),
     FG_CLI_VALUE(FG_CLI_DECIMAL_COMMA, film_run, outputs.decimal_comma),
@@ -297,9 +299,9 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     take_film_shard(run, fg_cli_shard(state, text));
     return 0;
   case OPTION_TOP:
-    run->options.top = fg_cli_is_second(state, "top-foil", text, "stiff", "sagging")
-                           ? FG_FILM_SAGGING
-                           : FG_FILM_STIFF;
+    run->options.top_foil = fg_cli_is_second(state, "top-foil", text, "stiff", "sagging")
+                                ? FG_FILM_TOP_FOIL_SAGGING
+                                : FG_FILM_TOP_FOIL_STIFF;
     return 0;
   case OPTION_SPEEDS:
     read_speeds(run, state, text);
@@ -311,7 +313,7 @@ static error_t parse_film_option(int key, char *text, struct argp_state *state) 
     read_mesh(run, state, text);
     return 0;
   case ARGP_KEY_ARG:
-    if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
+    if (run->design_path) argp_error(state, "one DESIGN at a time, not also '%s'", text);
     run->design_path = text;
     return 0;
   case ARGP_KEY_END:

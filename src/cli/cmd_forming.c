@@ -130,7 +130,7 @@ static void parse_free(struct argp_state *state, forming_run *run, const char *t
     run->free[run->free_count++] = (fg_forming_constant)c;
     text += length + (text[length] == ',');
   }
-  if (!run->free_count) argp_error(state, "--free: no constant");
+  if (!run->free_count) argp_error(state, "--free: name a constant of the material at least");
 }
 
 static void check_end(const forming_run *run, struct argp_state *state) {
@@ -186,7 +186,7 @@ static error_t parse_forming_option(int key, char *text, struct argp_state *stat
     parse_free(state, run, text);
     return 0;
   case ARGP_KEY_ARG:
-    if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
+    if (run->design_path) argp_error(state, "one DESIGN at a time, not also '%s'", text);
     run->design_path = text;
     return 0;
   case ARGP_KEY_END:

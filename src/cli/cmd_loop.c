@@ -150,11 +150,12 @@ static const char doc[] =
 /* COLUMN=P; the text, which argp owns, is cut at its last equals sign. */
 static void parse_period(struct argp_state *state, char *text, fg_loop_table_spec *spec) {
   char *equals = strrchr(text, '=');
-  if (!equals || equals == text) argp_error(state, "--period %s: COLUMN=P, x_mm=2", text);
-  if (spec->periods == FG_LOOP_PERIODS) argp_error(state, "too many --period");
+  if (!equals || equals == text)
+    argp_error(state, "--period: '%s' is not COLUMN=P, as x_mm=2", text);
+  if (spec->periods == FG_LOOP_PERIODS) argp_error(state, "--period: at most %d", FG_LOOP_PERIODS);
   fg_loop_known_period *known = &spec->period[spec->periods++];
   known->period = fg_cli_positive(state, "period", equals + 1);
-  if (!isfinite(known->period)) argp_error(state, "--period %s: a finite period", text);
+  if (!isfinite(known->period)) argp_error(state, "--period: '%s' has no finite period", text);
   *equals = '\0';
   known->column = text;
 }
@@ -164,9 +165,10 @@ static void parse_expected(struct argp_state *state, const char *text, bool *exp
   while (fg_loop_kind_words[k] && strcmp(fg_loop_kind_words[k], text) != 0)
     k++;
   if (!fg_loop_kind_words[k])
-    argp_error(state,
-               "--expect %s: columns, interactions, curves, order, scatter, rows or exchanges",
-               text);
+    argp_error(
+        state,
+        "--expect: '%s' is none of columns, interactions, curves, order, scatter, rows, exchanges",
+        text);
   else
     expected[k] = true;
 }
@@ -224,7 +226,8 @@ static error_t parse_loop_table_option(int key, char *text, struct argp_state *s
     arguments->spec.seed = fg_cli_seed(state, text);
     return 0;
   case OPTION_WITHOUT:
-    if (arguments->source.withouts == FG_LOOP_WITHOUTS) argp_error(state, "too many --without");
+    if (arguments->source.withouts == FG_LOOP_WITHOUTS)
+      argp_error(state, "--without: at most %d", FG_LOOP_WITHOUTS);
     arguments->source.without[arguments->source.withouts++] = text;
     return 0;
   case ARGP_KEY_ARG:

@@ -123,7 +123,7 @@ static void add_scan(struct argp_state *state, const char *path, bool held_out) 
   arguments *a = state->input;
   for (size_t i = 0; i < a->count; i++)
     if (!strcmp(a->paths[i], path)) argp_error(state, "%s is given twice", path);
-  if (a->count == SCANS_MAX) argp_error(state, "more than %d scans", SCANS_MAX);
+  if (a->count == SCANS_MAX) argp_error(state, "at most %d scans", SCANS_MAX);
   a->hold_out[a->count] = held_out;
   a->held_out += held_out;
   a->paths[a->count++] = path;
@@ -145,7 +145,8 @@ static void parse_gaps(struct argp_state *state, const char *text, double gap_px
   for (int i = 0; i < 2; i++)
     fine = fine && fabs(gap_px[i]) <= GAP_MAX_PX;
   if (!fine || *end || (gap_px[0] == 0 && gap_px[1] == 0))
-    argp_error(state, "--colour-gap %s: one or two numbers of rows from -%g to %g, not both 0",
+    argp_error(state,
+               "--colour-gap: '%s' is not one or two numbers of rows from -%g to %g, not both 0",
                text, GAP_MAX_PX, GAP_MAX_PX);
 }
 
@@ -155,7 +156,7 @@ static void parse_turns(struct argp_state *state, const char *text, int turns[FG
     char *end;
     long degrees = strtol(at, &end, 10);
     if (end == at || degrees % 90 || (*end && *end != ','))
-      argp_error(state, "--turned %s: multiples of 90, one for each scan, with commas", text);
+      argp_error(state, "--turned: '%s' is not a multiple of 90 for each scan, as 0,90", text);
     turns[i] = (int)(((degrees / 90) % 4 + 4) % 4);
     if (!*end) return;
     at = end + 1;
@@ -187,7 +188,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_SCANNER:
     if (!*text || strlen(text) >= FG_SCANNER_NAME)
-      argp_error(state, "--scanner: a name of 1 to %d bytes", FG_SCANNER_NAME - 1);
+      argp_error(state, "--scanner: the name must have 1 to %d bytes", FG_SCANNER_NAME - 1);
     a->options.scanner = text;
     return 0;
   case OPTION_SEED:

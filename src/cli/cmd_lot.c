@@ -140,7 +140,7 @@ static error_t parse_lot_option(int key, char *text, struct argp_state *state) {
   case OPTION_DIE:
     if (!strchr(text, '=')) argp_error(state, "--die: '%s' is not NAME=FILE.json", text);
     if (arguments->die_count == FG_LOT_DIES_MAX)
-      argp_error(state, "--die: at most %d", FG_LOT_DIES_MAX);
+      argp_error(state, "--die: at most %d dies", FG_LOT_DIES_MAX);
     arguments->dies[arguments->die_count++] = text;
     break;
   case OPTION_SHARD:

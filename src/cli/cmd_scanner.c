@@ -47,7 +47,7 @@ static error_t parse_scanner_option(int key, char *text, struct argp_state *stat
   if (fg_cli_keep_value(values, key, text, state)) return 0;
   switch (key) {
   case ARGP_KEY_ARG:
-    if (run->models == 2) argp_error(state, "more than two models: %s", text);
+    if (run->models == 2) argp_error(state, "two models are compared, not also '%s'", text);
     run->model[run->models++] = text;
     return 0;
   case ARGP_KEY_END:

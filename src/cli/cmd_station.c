@@ -111,11 +111,11 @@ static error_t parse_station_option(int key, char *text, struct argp_state *stat
   switch (key) {
   case OPTION_CONTEXT:
     if (request->context_count == FG_STATION_CONTEXTS)
-      argp_error(state, "--context: at most %d", FG_STATION_CONTEXTS);
+      argp_error(state, "--context: at most %d files", FG_STATION_CONTEXTS);
     arguments->contexts[request->context_count++] = text;
     break;
   case ARGP_KEY_ARG:
-    if (request->folder) argp_error(state, "one FOLDER is watched");
+    if (request->folder) argp_error(state, "one FOLDER at a time, not also '%s'", text);
     request->folder = text;
     break;
   case ARGP_KEY_END:

@@ -52,7 +52,7 @@ double fg_cli_positive(struct argp_state *state, const char *name, const char *t
   char *end;
   double value = strtod(text, &end);
   if (*end || end == text || !(value > 0))
-    argp_error(state, "--%s %s: a number above 0", name, text);
+    argp_error(state, "--%s: '%s' is not a number above 0", name, text);
   return value;
 }
 
@@ -66,7 +66,8 @@ bool fg_cli_is_second(struct argp_state *state, const char *name, const char *te
 uint64_t fg_cli_seed(struct argp_state *state, const char *text) {
   char *end;
   uint64_t seed = strtoull(text, &end, 10);
-  if (*end || end == text || *text == '-') argp_error(state, "--seed %s: a whole number", text);
+  if (*end || end == text || *text == '-')
+    argp_error(state, "--seed: '%s' is not a whole number from 0", text);
   return seed;
 }
 

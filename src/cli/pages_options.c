@@ -27,7 +27,7 @@ error_t fg_cli_pages_option(int key, char *text, struct argp_state *state, fg_cl
     break;
   case FG_CLI_HOST:
     if (request->host_count == FG_CLI_HOSTS_MAX)
-      argp_error(state, "--host: at most %d", FG_CLI_HOSTS_MAX);
+      argp_error(state, "--host: at most %d names", FG_CLI_HOSTS_MAX);
     pages->hosts[request->host_count++] = text;
     break;
   case FG_CLI_ORIGIN:

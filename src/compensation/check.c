@@ -37,7 +37,10 @@ static fg_status read_target(fg_context *ctx, const char *path, fg_expected_chec
   fg_design_default(&check->next.target);
   if (status == FG_OK)
     status = design ? fg_design_parse(ctx, path, design, &check->next.target)
-                    : fg_fail(ctx, FG_ERR_DATA, "%s: target is missing", path);
+                    : fg_fail(ctx, FG_ERR_DATA,
+                              "%s: the member target is missing: write the report again with "
+                              "`foilgauge die --target -o`",
+                              path);
   cJSON_free(design);
   cJSON_Delete(root);
   return status == FG_OK ? fg_design_derive(ctx, &check->next.target, &check->next.nominal)

@@ -35,20 +35,20 @@ HELD(find_held_height, height_mm.measured)
 HELD(find_held_height_low, height_mm.low)
 HELD(find_held_height_high, height_mm.high)
 
-static const char *look_of(bool inside) {
+static const char *row_class(bool inside) {
   return inside ? "pass" : "fail";
 }
 
 static const char *look_of_radius(const fg_subject *subject) {
-  return look_of(held_bump_of(subject)->radius_mm.inside);
+  return row_class(held_bump_of(subject)->radius_mm.inside);
 }
 
 static const char *look_of_angle(const fg_subject *subject) {
-  return look_of(held_bump_of(subject)->bump_angle_deg.inside);
+  return row_class(held_bump_of(subject)->bump_angle_deg.inside);
 }
 
 static const char *look_of_height(const fg_subject *subject) {
-  return look_of(held_bump_of(subject)->height_mm.inside);
+  return row_class(held_bump_of(subject)->height_mm.inside);
 }
 
 #define SHOWN(rank_, heading_, decimals_)                                                          \

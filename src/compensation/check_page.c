@@ -94,7 +94,7 @@ static fg_status write_check_page(fg_context *ctx, const fg_expected_check *chec
   const fg_subject list = {.object = check, .whole = check};
   const fg_springback_law *law = check->next.law;
   fg_provenance from = {.design = &check->next.target};
-  fg_provenance_take_date(&from, law->set[law->sets - 1].date);
+  fg_provenance_include_date(&from, law->set[law->sets - 1].date);
   fg_html_begin(out, "Lot against its prediction");
   put_check_first(out, check, &list);
   if (check->bumps) {

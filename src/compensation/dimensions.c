@@ -80,10 +80,14 @@ static fg_status check_die_design(fg_context *ctx, const cJSON *of, const fg_des
   const cJSON *datum = cJSON_GetObjectItemCaseSensitive(of, "datum");
   double thickness = read_number_or(of, "thickness_mm", NAN);
   if (cJSON_IsString(datum) && strcmp(datum->valuestring, fg_datum_word(design->datum)) != 0)
-    return fg_fail(ctx, FG_ERR_DATA, "the die's datum is %s, the target's is %s",
-                   datum->valuestring, fg_datum_word(design->datum));
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "the die's datum is %s, the target's is %s: measure the die with the target's design",
+        datum->valuestring, fg_datum_word(design->datum));
   if (!(fabs(thickness - design->thickness_mm) < 1e-9))
-    return fg_fail(ctx, FG_ERR_DATA, "the die is of a strip of %g mm, the target has %g mm",
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "the die is of a strip of %g mm, the target has %g mm: measure the die with the "
+                   "target's design",
                    thickness, design->thickness_mm);
   return FG_OK;
 }

@@ -39,7 +39,7 @@ static fg_status read_kept_law(fg_context *ctx, const cJSON *root, fg_springback
                    "neither a report of `foilgauge die --target -o` nor the "
                    "expected.json of a lot");
   FG_TRY(fg_object_read(&reading, &fg_law_members, item, law));
-  return law->sets ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "law.sets: there is none");
+  return law->sets ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "the member law.sets is missing or empty");
 }
 
 /* Copies the sets to the head of the list. */
@@ -78,8 +78,10 @@ fg_status fg_compensation_check_lot(fg_context *ctx, const char *folder, const f
     return fg_fail(ctx, FG_ERR_DATA, "%s: its foils are of form %s, the target's of form %s",
                    folder, fg_foil_kind_word(lot->kind), fg_foil_kind_word(target->kind));
   if (lot->datum != target->datum)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: measured for datum %s, the target has %s", folder,
-                   fg_datum_word(lot->datum), fg_datum_word(target->datum));
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: measured for datum %s, the target has %s: measure the lot with the target's design",
+        folder, fg_datum_word(lot->datum), fg_datum_word(target->datum));
   if (fabs(lot->thickness_mm - target->thickness_mm) > 1e-9)
     return fg_fail(ctx, FG_ERR_DATA, "%s: its strip has %g mm, the target's %g mm", folder,
                    lot->thickness_mm, target->thickness_mm);

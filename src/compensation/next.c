@@ -37,8 +37,13 @@ fg_status fg_formed_laws_find(fg_context *ctx, size_t bumps, fg_next_die *next) 
   next->laws = block;
   for (int q = 0; q < FG_FORMED; q++) {
     if (q != FG_FORMED_OVERALL && !bumps) continue;
-    FG_TRY(fg_springback_find(ctx, next->law->set, next->law->sets, (fg_formed)q, numbers, bumps,
-                              target_size(&next->target, (fg_formed)q), &next->laws->of[q]));
+    const fg_springback_data data = {.formed = (fg_formed)q,
+                                     .sets = next->law->set,
+                                     .set_count = next->law->sets,
+                                     .bump_numbers = numbers,
+                                     .bump_count = bumps,
+                                     .target = target_size(&next->target, (fg_formed)q)};
+    FG_TRY(fg_springback_find(ctx, &data, &next->laws->of[q]));
     fg_springback_describe(&next->laws->of[q], &next->law->of[q]);
   }
   return FG_OK;

@@ -119,7 +119,7 @@ fg_status fg_next_die_write_html(fg_context *ctx, const fg_next_die *next, FILE 
   const fg_subject list = {.object = next, .whole = next};
   fg_provenance from = {.design = &next->target};
   for (size_t i = 0; i < next->law->sets; i++)
-    fg_provenance_take_date(&from, next->law->set[i].date);
+    fg_provenance_include_date(&from, next->law->set[i].date);
   fg_html_begin(out, "Next die");
   put_first_screen(out, next);
   fputs("<section class=\"part\">\n<h1>Die and expected foil</h1>\n<figure>", out);

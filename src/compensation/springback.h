@@ -36,9 +36,17 @@ struct fg_formed_laws {
   fg_springback_fit of[FG_FORMED];
 };
 
-/* Finds the posterior from all sets; `numbers` are the target's bumps. */
-fg_status fg_springback_find(fg_context *ctx, const fg_formed_set *sets, size_t count,
-                             fg_formed formed, const int *numbers, size_t places, double target,
+/* Data that the posterior of one quantity is found from. */
+typedef struct fg_springback_data {
+  fg_formed formed; /* the quantity */
+  const fg_formed_set *sets;
+  size_t set_count;
+  const int *bump_numbers; /* of the target */
+  size_t bump_count;
+  double target; /* the quantity's size in the target */
+} fg_springback_data;
+
+fg_status fg_springback_find(fg_context *ctx, const fg_springback_data *data,
                              fg_springback_fit *fit);
 void fg_springback_fit_free(fg_springback_fit *fit);
 

@@ -242,29 +242,31 @@ static fg_status fill_points(fg_context *ctx, const size_grid *grid, fg_state_sp
   return FG_OK;
 }
 
-static void list_places(const fg_formed_set *sets, size_t count, fg_formed formed,
-                        const int *numbers, size_t places, fg_springback_fit *fit) {
-  fit->places = fg_formed_is_by_bump(formed) ? places : 1;
+static void list_places(const fg_springback_data *data, fg_springback_fit *fit) {
+  bool by_bump = fg_formed_is_by_bump(data->formed);
+  fit->places = by_bump ? data->bump_count : 1;
   for (size_t i = 0; i < fit->places; i++) {
-    fit->number[i] = fg_formed_is_by_bump(formed) ? numbers[i] : 0;
-    for (size_t s = 0; s < count; s++)
-      for (size_t k = 0; k < sets[s].of[formed].places; k++)
-        fit->seen[i] |= sets[s].of[formed].place[k].number == fit->number[i];
+    fit->number[i] = by_bump ? data->bump_numbers[i] : 0;
+    for (size_t s = 0; s < data->set_count; s++) {
+      const fg_formed_data *of = &data->sets[s].of[data->formed];
+      for (size_t k = 0; k < of->places; k++)
+        fit->seen[i] |= of->place[k].number == fit->number[i];
+    }
   }
 }
 
-fg_status fg_springback_find(fg_context *ctx, const fg_formed_set *sets, size_t count,
-                             fg_formed formed, const int *numbers, size_t places, double target,
+fg_status fg_springback_find(fg_context *ctx, const fg_springback_data *data,
                              fg_springback_fit *fit) {
-  const fg_formed_data pooled = pool_squares(sets, count, formed);
+  const fg_formed formed = data->formed;
+  const fg_formed_data pooled = pool_squares(data->sets, data->set_count, formed);
   fg_state_space space = {.states = 0};
   size_grid grid = {.count = 0};
   fg_status status = FG_OK;
-  *fit = (fg_springback_fit){.reference = log(target)};
-  list_places(sets, count, formed, numbers, places, fit);
-  set_exponent_prior(&priors[formed], first_springback(&sets[0].of[formed]), &space.prior);
+  *fit = (fg_springback_fit){.reference = log(data->target)};
+  list_places(data, fit);
+  set_exponent_prior(&priors[formed], first_springback(&data->sets[0].of[formed]), &space.prior);
   FG_TRY_EXIT(make_size_grid(ctx, &priors[formed], &pooled, &grid));
-  FG_TRY_EXIT(fg_state_begin(ctx, sets, count, formed, fit, &space));
+  FG_TRY_EXIT(fg_state_begin(ctx, data->sets, data->set_count, formed, fit, &space));
   for (size_t i = 0; i < grid.count; i++) {
     double evidence;
     FG_TRY_EXIT(fg_state_evidence(ctx, &space, &grid.at[i].sizes, &evidence));

@@ -264,7 +264,9 @@ static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, si
                      cap);
   } while (got > 0);
   if (ferror(stream))
-    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be read: %s", path, strerror(errno));
+    return fg_fail(ctx, fg_status_of_errno(errno),
+                   "%s: cannot be read: %s; check the disk or copy it again", path,
+                   strerror(errno));
   (*text)[length] = '\0';
   const char *nul = memchr(*text, '\0', length);
   if (nul && length > 1 && (!memcmp(*text, "\xff\xfe", 2) || !memcmp(*text, "\xfe\xff", 2)))
@@ -280,6 +282,13 @@ fg_status fg_file_open(fg_context *ctx, const char *path, FILE **stream) {
   if (*stream) return FG_OK;
   return fg_fail(ctx, fg_status_of_errno(errno), "%.600s: cannot be opened: %s; %s", path,
                  strerror(errno), errno == ENOMEM ? "close other programs" : "check the name");
+}
+
+fg_status fg_file_open_to_append(fg_context *ctx, const char *path, FILE **stream) {
+  *stream = fopen(path, "a+e");
+  if (!*stream) return fg_output_fail(ctx, path, errno);
+  rewind(*stream); /* where reading begins is not defined */
+  return FG_OK;
 }
 
 fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char **text) {
@@ -300,7 +309,8 @@ fg_status fg_file_read_token(fg_context *ctx, const char *path, char *token, int
   FG_TRY(fg_file_open(ctx, path, &file));
   char *line = fgets(token, size, file);
   fclose(file);
-  if (!line) return fg_fail(ctx, FG_ERR_DATA, "%.600s: there is no token in it", path);
+  if (!line)
+    return fg_fail(ctx, FG_ERR_DATA, "%.600s: it is empty; its first line must be the token", path);
   token[strcspn(token, " \t\r\n")] = '\0';
   return FG_OK;
 }

@@ -8,6 +8,9 @@
 /* Opens a file to read. */
 fg_status fg_file_open(fg_context *ctx, const char *path, FILE **stream);
 
+/* Opens a file to read its content and to append to it; a missing one is made. */
+fg_status fg_file_open_to_append(fg_context *ctx, const char *path, FILE **stream);
+
 /* Ends the writing to an open stream: FG_ERR_IO when a write has failed. `what` names the content
  * in words. */
 fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what);

@@ -101,7 +101,7 @@ int fg_temporary_create(const char *path, mode_t mode, fg_temporary **made) {
   return error;
 }
 
-static void take_off_list(const fg_temporary *temporary) {
+static void remove_from_list(const fg_temporary *temporary) {
   fg_temporary **at = &first;
   while (*at && *at != temporary)
     at = &(*at)->next;
@@ -112,7 +112,7 @@ int fg_temporary_rename(fg_temporary *temporary, const char *path) {
   pthread_mutex_lock(&guard);
   int error = rename(temporary->path, path) == 0 ? 0 : errno;
   if (!error) {
-    take_off_list(temporary);
+    remove_from_list(temporary);
     free(temporary->path);
     temporary->path = NULL;
   }
@@ -125,7 +125,7 @@ void fg_temporary_close(fg_temporary *temporary) {
   if (temporary->path) {
     pthread_mutex_lock(&guard);
     unlink(temporary->path);
-    take_off_list(temporary);
+    remove_from_list(temporary);
     pthread_mutex_unlock(&guard);
   }
   close(temporary->descriptor);

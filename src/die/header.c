@@ -101,7 +101,7 @@ static int axis_of(const char *text, size_t length) {
   return -1;
 }
 
-static void take_unit(fg_die_unit unit, fg_die_unit *into) {
+static void set_unit(fg_die_unit unit, fg_die_unit *into) {
   if (unit) *into = unit;
 }
 
@@ -115,8 +115,8 @@ static void read_unit_line(const char *line, size_t length, fg_die_header *heade
     z = z || word_is(&word, "z");
   }
   fg_die_unit unit = unit_in(line, length, &header->other_unit);
-  if (x || !z) take_unit(unit, &header->unit[0]);
-  if (z || !x) take_unit(unit, &header->unit[1]);
+  if (x || !z) set_unit(unit, &header->unit[0]);
+  if (z || !x) set_unit(unit, &header->unit[1]);
 }
 
 /* Reads headings that name both axes: "X [mm]; Z [µm]". When blanks separate, a heading and its
@@ -131,12 +131,12 @@ static bool read_names(const fg_die_field *fields, size_t count, size_t columns,
     if (here >= 0 && !column[here]) column[here] = i + 1;
     if (here >= 0 || count == columns) axis = here;
     if (axis >= 0)
-      take_unit(unit_in(fields[i].text, fields[i].length, &header->other_unit), &unit[axis]);
+      set_unit(unit_in(fields[i].text, fields[i].length, &header->other_unit), &unit[axis]);
   }
   if (!column[0] || !column[1]) return false;
   for (int k = 0; k < 2; k++) {
     if (count == columns) header->column[k] = column[k];
-    take_unit(unit[k], &header->unit[k]);
+    set_unit(unit[k], &header->unit[k]);
   }
   return true;
 }
@@ -150,7 +150,7 @@ static void read_units(const fg_die_field *fields, size_t count, fg_die_header *
   }
   for (int axis = 0; axis < 2; axis++) {
     size_t column = header->column[axis] ? header->column[axis] - 1 : (size_t)axis;
-    take_unit(unit_in(fields[column].text, fields[column].length, NULL), &header->unit[axis]);
+    set_unit(unit_in(fields[column].text, fields[column].length, NULL), &header->unit[axis]);
   }
 }
 

@@ -251,20 +251,26 @@ static void number_bumps(const fg_die_source *source, int last, fg_die_trace *tr
   }
 }
 
-/* Finds bumps that were traced but not measured, except those cut by an end of the trace. `first`
- * is a bump of the layout that was measured, `at` its place along x, `last` the last place. */
-static fg_status find_lost(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
-                           const fg_layout *layout, const fg_die_source *source, size_t first,
-                           int at, int last, fg_die_trace *trace) {
-  double rising = layout->turning.sense < 0 ? 1 : -1, from = bump_direction_deg(layout, first);
-  FG_TRY(fg_memory_allocate(ctx, (size_t)last + 1, sizeof *trace->lost, (void **)&trace->lost));
-  for (int along = 0; along <= last; along++) {
+/* Places of bumps along x, at the design's pitch from a bump that was measured. */
+typedef struct bump_places {
+  double pitch_deg; /* rises with x */
+  double from_deg;  /* direction of the measured bump */
+  int from, last;   /* its place; the last place of the trace */
+} bump_places;
+
+/* Lists bumps that were traced but not measured, except those cut by an end of the trace. */
+static fg_status list_lost_bumps(fg_context *ctx, const fg_layout *layout,
+                                 const fg_nominal *nominal, const fg_die_source *source,
+                                 const bump_places *places, fg_die_trace *trace) {
+  FG_TRY(fg_memory_allocate(ctx, (size_t)places->last + 1, sizeof *trace->lost,
+                            (void **)&trace->lost));
+  for (int place = 0; place <= places->last; place++) {
     bool measured = false;
     for (size_t b = 0; b < trace->bump_count; b++)
-      measured = measured || trace->bumps[b].number == along;
-    double at_deg = from + rising * design->bumps.pitch_deg * (along - at);
+      measured = measured || trace->bumps[b].number == place;
+    double at_deg = places->from_deg + places->pitch_deg * (place - places->from);
     if (!measured && is_traced(layout, nominal, at_deg))
-      trace->lost[trace->lost_count++] = bump_number_at(source, along, last);
+      trace->lost[trace->lost_count++] = bump_number_at(source, place, places->last);
   }
   return FG_OK;
 }
@@ -289,8 +295,12 @@ static fg_status fill_bumps(fg_context *ctx, const fg_design *design, const fg_l
   along += crowns_beyond(design, &nominal, layout, before, 1);
   trace->cut_bumps = (size_t)along + 1 - trace->bump_count;
   trace->last_number = along + (source->first_bump ? source->first_bump : 1);
-  FG_TRY(find_lost(ctx, design, &nominal, layout, source, before,
-                   trace->bumps[trace->bump_count - 1].number, along, trace));
+  const bump_places places = {.pitch_deg =
+                                  (layout->turning.sense < 0 ? 1 : -1) * design->bumps.pitch_deg,
+                              .from_deg = bump_direction_deg(layout, before),
+                              .from = trace->bumps[trace->bump_count - 1].number,
+                              .last = along};
+  FG_TRY(list_lost_bumps(ctx, layout, &nominal, source, &places, trace));
   number_bumps(source, along, trace);
   return FG_OK;
 }

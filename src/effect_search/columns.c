@@ -27,7 +27,7 @@ double fg_search_along(const fg_search_columns *s, size_t k, const double *v) {
   return fg_dot_in_lanes(s->basis + k * s->rows + first, v + first, s->last[k] - first);
 }
 
-void fg_search_take_out(const fg_search_columns *s, size_t rank, double *v) {
+void fg_search_project_out(const fg_search_columns *s, size_t rank, double *v) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < rank; k++) {
       const double *b = s->basis + k * s->rows;
@@ -53,7 +53,7 @@ static bool extend(fg_search_columns *s, size_t rank, const double *v, double sh
   double *to = s->basis + rank * s->rows, whole = fg_dot_in_lanes(v, v, s->rows);
   if (!(whole > min)) return false;
   memcpy(to, v, s->rows * sizeof *to);
-  fg_search_take_out(s, rank, to);
+  fg_search_project_out(s, rank, to);
   double left = fg_dot_in_lanes(to, to, s->rows);
   if (!(left > fmax(share * whole, min))) return false;
   for (size_t i = 0; i < s->rows; i++)
@@ -111,7 +111,7 @@ size_t fg_search_columns_add(fg_search_columns *s, const fg_effect *effect, cons
     double square = fg_dot_in_lanes(to, to, s->rows);
     if (square == 0) continue; /* a knot that is not used */
     whole += square;
-    fg_search_take_out(s, s->geometry_rank, to);
+    fg_search_project_out(s, s->geometry_rank, to);
     left += fg_dot_in_lanes(to, to, s->rows);
   }
   *share = whole > 0 ? left / whole : 0;
@@ -135,7 +135,7 @@ size_t fg_search_columns_span(fg_search_columns *s, size_t skip, size_t end) {
     if (extend(s, rank, v, DEPENDENT, s->min)) rank++;
   }
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
-  fg_search_take_out(s, rank, s->left);
+  fg_search_project_out(s, rank, s->left);
   return rank;
 }
 
@@ -143,7 +143,7 @@ size_t fg_search_columns_span_more(fg_search_columns *s, size_t rank, size_t fro
   for (size_t c = from; c < to; c++)
     if (extend(s, rank, s->values + c * s->rows, DEPENDENT, s->min)) rank++;
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
-  fg_search_take_out(s, rank, s->left);
+  fg_search_project_out(s, rank, s->left);
   return rank;
 }
 
@@ -212,8 +212,8 @@ double fg_search_solve(const fg_search_columns *s, const fg_search_term *terms, 
   return fit_terms(s, &residual, terms, count, x, last_u, rank);
 }
 
-double fg_search_share_left(const fg_search_columns *s, const fg_search_term *terms, size_t count,
-                            size_t column) {
+double fg_search_residual_share(const fg_search_columns *s, const fg_search_term *terms,
+                                size_t count, size_t column) {
   const double *products = s->gram + column * FG_SEARCH_COLUMNS;
   const target to = {products, products[column], 0};
   size_t rank;
@@ -302,10 +302,10 @@ fg_status fg_search_width_uncertainty(fg_context *ctx, fg_search_columns *s) {
   size_t rank = span_more(s, 0, v, 1);
   rank = span_more(s, rank, s->strain, s->count);
   memcpy(left, s->width, s->rows * sizeof *left);
-  fg_search_take_out(s, rank, left);
+  fg_search_project_out(s, rank, left);
   double before = fg_dot_in_lanes(left, left, s->rows);
   size_t more = span_more(s, rank, v, nuisance(s, v));
-  fg_search_take_out(s, more, left);
+  fg_search_project_out(s, more, left);
   double after = fg_dot_in_lanes(left, left, s->rows), n = (double)s->rows;
   double chance = (double)(more - rank) * after / fmax(n - (double)more, 1);
   if (before - after > CHANCE_TIMES * chance) s->width_part = (before - after - chance) / n;
@@ -390,7 +390,7 @@ static void span_geometry(fg_search_columns *s, const double *residual_um, const
       s->geometry_rank++;
   }
   whiten(s, residual_um, s->residual);
-  fg_search_take_out(s, s->geometry_rank, s->residual);
+  fg_search_project_out(s, s->geometry_rank, s->residual);
   s->square = fg_dot_in_lanes(s->residual, s->residual, s->rows);
 }
 

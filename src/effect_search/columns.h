@@ -66,7 +66,7 @@ size_t fg_search_gather(const fg_search_columns *columns, const fg_effect *effec
 /* Product with vector k of the basis. */
 double fg_search_along(const fg_search_columns *columns, size_t k, const double *v);
 /* Removes from v its part in the first `rank` vectors of the basis. */
-void fg_search_take_out(const fg_search_columns *columns, size_t rank, double *v);
+void fg_search_project_out(const fg_search_columns *columns, size_t rank, double *v);
 
 /* Adds an effect's columns. `first` gets the index of the first one, `share` the share of their
  * square that the geometry leaves. Returns their number. */
@@ -87,8 +87,8 @@ double fg_search_solve(const fg_search_columns *columns, const fg_search_term *t
                        double *x, double *last_u, size_t *rank);
 
 /* Returns the share of a column's square that is left beside the terms. */
-double fg_search_share_left(const fg_search_columns *columns, const fg_search_term *terms,
-                            size_t count, size_t column);
+double fg_search_residual_share(const fg_search_columns *columns, const fg_search_term *terms,
+                                size_t count, size_t column);
 
 /* Returns the residual sum of the widths for terms with these coefficients. */
 double fg_search_width_sum(const fg_search_columns *columns, const fg_search_term *terms,

@@ -64,8 +64,8 @@ static double stated_u_um(const fg_edge_fit *edge_fit) {
   return uncertainty;
 }
 
-double fg_common_level_left(const fg_edge_fit *edge_fit, const double *scale,
-                            const double *residual_um) {
+double fg_common_level_uncertainty(const fg_edge_fit *edge_fit, const double *scale,
+                                   const double *residual_um) {
   double stated = stated_u_um(edge_fit);
   sums s = sum_up_gauges(edge_fit, scale, residual_um);
   double determinant = s.xx * s.ll - s.xl * s.xl;

@@ -9,7 +9,7 @@
  * cause, µm. It is the uncertainty that each scan states, or less where gauges of known and of
  * several sizes tell the level from a scale. `scale` is the column of the scale at the rows,
  * `residual_um` the residual that it is fitted to. */
-double fg_common_level_left(const fg_edge_fit *edge_fit, const double *scale,
-                            const double *residual_um);
+double fg_common_level_uncertainty(const fg_edge_fit *edge_fit, const double *scale,
+                                   const double *residual_um);
 
 #endif

@@ -282,7 +282,7 @@ static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
     along += row_weight_at(c->edge_fit, i) * c->columns[i];
     square += row_weight_at(c->edge_fit, i) * c->columns[i] * c->columns[i];
   }
-  double uncertainty = fg_common_level_left(c->edge_fit, c->columns, c->residual);
+  double uncertainty = fg_common_level_uncertainty(c->edge_fit, c->columns, c->residual);
   if (square > 0)
     effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], uncertainty * along / square);
 }

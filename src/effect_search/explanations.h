@@ -65,6 +65,7 @@ typedef struct fg_explanations {
 } fg_explanations;
 
 /* Makes a set, without numbers, of one explanation. */
-void fg_search_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set);
+void fg_explanations_get_set(const fg_explanations *explanations, size_t explanation,
+                             fg_effect_set *set);
 
 #endif

@@ -25,7 +25,8 @@ enum { ROUNDS = 8, PROPOSING_ROUNDS = 3, COARSE_ROUNDS = 2 };
 /* Maximum number of sets given up; further ones may recur. */
 enum { GIVEN_UP_MAX = 16 };
 
-void fg_search_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
+void fg_explanations_get_set(const fg_explanations *explanations, size_t explanation,
+                             fg_effect_set *set) {
   memset(set, 0, sizeof *set);
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     if (!(explanations->each[explanation].mask >> e & 1) || set->count == FG_EFFECT_SET_MAX)
@@ -209,10 +210,10 @@ static fg_status fit_or_best_alone(fg_context *ctx, fg_edge_fit *edge_fit, doubl
 static void take_likeliest(const fg_explanations *explanations, const fg_effect_set *prefer,
                            fg_effect_set *set) {
   for (size_t m = 0; prefer && m < explanations->count; m++) {
-    fg_search_take(explanations, m, set);
+    fg_explanations_get_set(explanations, m, set);
     if (same_effects(set, prefer)) return;
   }
-  fg_search_take(explanations, 0, set);
+  fg_explanations_get_set(explanations, 0, set);
 }
 
 /* Runs one turn: the search at the present geometry, and the fit of the set found, `next`. The

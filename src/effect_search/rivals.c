@@ -108,7 +108,7 @@ static bool follows(const fg_search *s, const fg_candidate *curve, unsigned mask
     const fg_candidate *effect = &s->out->candidates[e];
     if (!(mask >> e & 1)) continue;
     for (size_t k = 0; k < effect->terms; k++)
-      if (fg_search_share_left(&s->columns, term, curve->columns, effect->column[k]) >
+      if (fg_search_residual_share(&s->columns, term, curve->columns, effect->column[k]) >
           FOLLOWED_SHARE)
         return false;
   }

@@ -90,11 +90,11 @@ fg_status fg_evidence_list_window(fg_context *ctx, fg_evidence_search *s,
   for (size_t m = 0; m < s->count && w->count < FG_EVIDENCE_WINDOW; m++) {
     const fg_evidence_model *model = &s->models[m];
     double below = w->count ? per_nat * (w->model[0]->score - model->score) : 0;
-    bool bears;
+    bool defined;
     if (below > log(1 / WEIGHT_MIN)) break; /* sorted */
     if (includes_listed(model, w) || (found && !fg_evidence_includes(model, found))) continue;
-    FG_TRY(fg_evidence_leads_bear_names(ctx, s, model, &bears));
-    if (!bears) continue;
+    FG_TRY(fg_evidence_has_defining_columns(ctx, s, model, &defined));
+    if (!defined) continue;
     w->model[w->count] = model;
     total += w->weight[w->count++] = exp(-below);
   }
@@ -104,19 +104,17 @@ fg_status fg_evidence_list_window(fg_context *ctx, fg_evidence_search *s,
 }
 
 fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *s,
-                                        const fg_evidence_model *found, fg_displacement *d,
+                                        const fg_evidence_window *w, fg_displacement *d,
                                         fg_displacement_part *parts) {
   fg_evidence_shift shift;
-  fg_evidence_window w;
   fg_status status = FG_OK;
-  FG_TRY(fg_evidence_list_window(ctx, s, found, &w));
   *d = (fg_displacement){.frame = s->problem.edge_fit->frame};
   FG_TRY(fg_evidence_shift_open(ctx, s, &shift));
-  for (size_t m = 0; m < w.count && status == FG_OK; m++) {
+  for (size_t m = 0; m < w->count && status == FG_OK; m++) {
     fg_evidence_posterior posterior;
-    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, w.model[m], &posterior));
-    add_mean(s, w.model[m], &posterior, w.weight[m], d);
-    status = fg_evidence_shift_add_posterior(ctx, s, w.model[m], &posterior, w.weight[m], &shift);
+    FG_TRY_EXIT(fg_evidence_find_posterior(ctx, s, w->model[m], &posterior));
+    add_mean(s, w->model[m], &posterior, w->weight[m], d);
+    status = fg_evidence_shift_add_posterior(ctx, s, w->model[m], &posterior, w->weight[m], &shift);
     fg_evidence_posterior_close(&posterior);
   }
   fg_evidence_shift_spread(s->problem.edge_fit, &shift, NULL, parts);

@@ -33,7 +33,9 @@ typedef struct fg_evidence_window {
   size_t count;
 } fg_evidence_window;
 
-/* `found` as below. */
+/* Fills the window that displacement and map are means over. `found`: the one set of causes of the
+ * verdict, which all models of the window hold then. NULL: the models that the verdict does not
+ * tell apart. */
 fg_status fg_evidence_list_window(fg_context *ctx, fg_evidence_search *search,
                                   const fg_evidence_model *found, fg_evidence_window *window);
 
@@ -44,11 +46,10 @@ const fg_effect *fg_evidence_glass_effect(const fg_evidence_part *part);
 /* Returns the displacement of a place on the glass, mm. */
 fg_point fg_displacement_at(const fg_displacement *displacement, fg_point at);
 
-/* Fills the displacement and, per part of the edge fit, its covariance; `parts` are allocated.
- * `found`: the one set of causes of the verdict, which all models that have weight hold then. NULL:
- * the models that it does not tell apart have weight. */
+/* Fills the mean displacement over the window and, per part of the edge fit, its covariance;
+ * `parts` are allocated. */
 fg_status fg_evidence_find_displacement(fg_context *ctx, fg_evidence_search *search,
-                                        const fg_evidence_model *found,
+                                        const fg_evidence_window *window,
                                         fg_displacement *displacement, fg_displacement_part *parts);
 
 #endif

@@ -234,12 +234,12 @@ exit:
   return status;
 }
 
-fg_status fg_evidence_find_map(fg_context *ctx, fg_evidence_search *s, const fg_displacement *about,
+fg_status fg_evidence_find_map(fg_context *ctx, fg_evidence_search *s,
+                               const fg_evidence_window *window, const fg_displacement *about,
                                fg_field_map *map) {
-  fg_evidence_window w;
+  fg_evidence_window w = *window;
   fg_map_fit fit = {.places = 0};
   *map = (fg_field_map){.mm = NULL};
-  FG_TRY(fg_evidence_list_window(ctx, s, NULL, &w));
   keep_mapped(&w);
   if (!w.count) return FG_OK;
   FG_TRY(choose_splines(ctx, about, &fit, map));

@@ -7,12 +7,13 @@
 #include "evidence/displacement.h"
 #include "field/map.h"
 
-/* Fills a map over the picture, and the modes of its uncertainty: of every model, and of the
- * models about their mean. `about` is the displacement of fg_evidence_find_displacement, which
- * chooses the splines. No numbers (mm: NULL) where a model that has weight jumps or has a scale of
- * known sizes, or where splines do not follow the mean.
+/* Fills a map over the picture, and the modes of its uncertainty: of every model of the window, and
+ * of these models about their mean. `about` is the displacement of fg_evidence_find_displacement,
+ * which chooses the splines. No numbers (mm: NULL) where a model that has weight jumps or has a
+ * scale of known sizes, or where splines do not follow the mean.
  */
 fg_status fg_evidence_find_map(fg_context *ctx, fg_evidence_search *search,
-                               const fg_displacement *about, fg_field_map *map);
+                               const fg_evidence_window *window, const fg_displacement *about,
+                               fg_field_map *map);
 
 #endif

@@ -286,7 +286,8 @@ fg_status fg_evidence_fit_rival(fg_context *ctx, fg_evidence_search *s,
       .rival = option->rival, .stretch = option->stretch, .first = option->first, .count = n};
   FG_TRY(fg_memory_allocate(ctx, 2 * n * (n + 1), sizeof *gram, (void **)&gram));
   double *right = gram + n * n, *work = right + n;
-  fg_status status = fg_evidence_beside(ctx, &s->problem, factor, option->first, n, gram, right);
+  fg_status status =
+      fg_evidence_gram_beside(ctx, &s->problem, factor, option->first, n, gram, right);
   for (size_t l = 0; status == FG_OK && option->rival->variances(edge_fit, l, variance); l++)
     for (int a = 0; a < FG_EVIDENCE_AMPLITUDES; a++) {
       double size = fg_evidence_amplitude_um(&s->request.prior, a);

@@ -145,8 +145,9 @@ double fg_evidence_of(size_t n, const double *gram, const double *right, const d
   return 0.5 * fg_dot(v, v, n) - half_log;
 }
 
-fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *p, const fg_evidence_factor *f,
-                             size_t first, size_t count, double *gram, double *right) {
+fg_status fg_evidence_gram_beside(fg_context *ctx, fg_evidence_problem *p,
+                                  const fg_evidence_factor *f, size_t first, size_t count,
+                                  double *gram, double *right) {
   double *forward = NULL;
   FG_TRY(solve_columns(ctx, p, f, first, count, &forward));
   for (size_t a = 0; a < count; a++) {

@@ -129,10 +129,11 @@ fg_status fg_evidence_score_trial(fg_context *ctx, const fg_evidence_problem *pr
                                   const fg_evidence_factor *factor, const fg_evidence_trial *trial,
                                   const double *variance, double *evidence);
 
-/* Products of consecutive columns beside the factor's model: `gram` count × count, `right`. */
-fg_status fg_evidence_beside(fg_context *ctx, fg_evidence_problem *problem,
-                             const fg_evidence_factor *factor, size_t first, size_t count,
-                             double *gram, double *right);
+/* Finds the products of consecutive columns, projected beside the factor's model: `gram` count ×
+ * count, and `right`, those with the residual. */
+fg_status fg_evidence_gram_beside(fg_context *ctx, fg_evidence_problem *problem,
+                                  const fg_evidence_factor *factor, size_t first, size_t count,
+                                  double *gram, double *right);
 
 /* ln evidence of columns with such products under prior variances; `work` count² numbers. */
 double fg_evidence_of(size_t count, const double *gram, const double *right, const double *variance,

@@ -110,7 +110,7 @@ double fg_evidence_dot(const double *a, fg_evidence_span of_a, const double *b,
 }
 
 /* Removes the flat directions; `along` gets the parts along them. */
-static void take_flat_out(const fg_evidence_problem *p, double *v, double *along) {
+static void project_flat_out(const fg_evidence_problem *p, double *v, double *along) {
   memset(along, 0, p->rank * sizeof *along);
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < p->rank; k++) {
@@ -134,7 +134,7 @@ static void add_direction(fg_evidence_problem *p, const double *direction, const
   double *to = p->basis + p->rank * p->rows, *numbers = p->directions + p->rank * parameters;
   whiten_rows(p, column, p->white, to);
   double whole = fg_dot_in_lanes(to, to, p->rows), *along = p->residual_along;
-  take_flat_out(p, to, along);
+  project_flat_out(p, to, along);
   double left = fg_dot_in_lanes(to, to, p->rows);
   if (!(left > IN_SPAN * whole)) return;
   memcpy(numbers, direction, parameters * sizeof *numbers);
@@ -218,7 +218,7 @@ fg_status fg_evidence_open(fg_context *ctx, const fg_edge_fit *edge_fit, const d
   find_noise_um(p, residual_um);
   FG_TRY_EXIT(find_flat_directions(ctx, p, jacobian));
   whiten_rows(p, residual_um, p->white, p->residual);
-  take_flat_out(p, p->residual, p->residual_along);
+  project_flat_out(p, p->residual, p->residual_along);
 exit:
   if (status != FG_OK) fg_evidence_close(p);
   return status;
@@ -269,7 +269,7 @@ void fg_evidence_close(fg_evidence_problem *p) {
 void fg_evidence_make(const fg_evidence_problem *p, const double *values, double *white,
                       fg_evidence_column *column) {
   whiten_rows(p, values, white, column->values);
-  take_flat_out(p, column->values, column->along);
+  project_flat_out(p, column->values, column->along);
   column->span = span_of(column->values, p->rows);
   column->right = fg_dot_in_lanes(column->values, p->residual, p->rows);
 }

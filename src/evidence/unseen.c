@@ -56,7 +56,7 @@ static fg_status weigh_sizes(fg_context *ctx, fg_evidence_search *s, const fg_ev
   FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, model, &factor));
   FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * n * (n + 1), sizeof *gram, (void **)&gram));
   double *right = gram + n * n, *work = right + n;
-  FG_TRY_EXIT(fg_evidence_beside(ctx, &s->problem, &factor, first, n, gram, right));
+  FG_TRY_EXIT(fg_evidence_gram_beside(ctx, &s->problem, &factor, first, n, gram, right));
   for (size_t i = 0; i < to->count; i++) {
     to->weight[i] = fg_evidence_of(n, gram, right, to->variance[i], work);
     top = fmax(top, to->weight[i]);

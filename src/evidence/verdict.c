@@ -29,9 +29,9 @@ enum { PIECES = 3 };
 
 /* ---- models whose numbers do not bear their name ---- */
 
-static bool polynomial_bears_name(const fg_evidence_search *s, const fg_evidence_part *part,
-                                  const double *mean, const double *covariance, size_t n,
-                                  double *middle_mm) {
+static bool polynomial_deserves_name(const fg_evidence_search *s, const fg_evidence_part *part,
+                                     const double *mean, const double *covariance, size_t n,
+                                     double *middle_mm) {
   size_t lead = part->count - 1;
   const fg_field_frame *frame = &s->problem.edge_fit->frame;
   int axis = part->effect->axis;
@@ -79,41 +79,43 @@ static bool lowest_leads(fg_evidence_problem *p, const fg_evidence_part *part, c
 }
 
 /* Returns true for an effect that extends another one by its first number. */
-static bool is_led(const fg_effect *effect) {
+static bool is_extension(const fg_effect *effect) {
   return effect && effect->extends && effect->numbers == FG_EFFECT_LED;
 }
 
 /* `mean` and `covariance` begin with the numbers of the effect. */
-static bool lead_bears_name(const fg_effect *effect, const double *mean, const double *covariance) {
-  if (!is_led(effect)) return true;
+static bool has_defining_column(const fg_effect *effect, const double *mean,
+                                const double *covariance) {
+  if (!is_extension(effect)) return true;
   return fabs(mean[0]) >= LEADING_SIGMAS * sqrt(covariance[0]);
 }
 
-static bool holds_led(const fg_evidence_model *model) {
+static bool holds_extension(const fg_evidence_model *model) {
   for (size_t k = 0; k < model->parts; k++)
-    if (is_led(model->part[k]->effect)) return true;
+    if (is_extension(model->part[k]->effect)) return true;
   return false;
 }
 
-fg_status fg_evidence_leads_bear_names(fg_context *ctx, fg_evidence_search *s,
-                                       const fg_evidence_model *model, bool *bear) {
+fg_status fg_evidence_has_defining_columns(fg_context *ctx, fg_evidence_search *s,
+                                           const fg_evidence_model *model, bool *has) {
   fg_evidence_posterior posterior;
-  *bear = true;
-  if (!holds_led(model)) return FG_OK;
+  *has = true;
+  if (!holds_extension(model)) return FG_OK;
   FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
   for (size_t k = 0; k < model->parts; k++) {
     size_t at = fg_evidence_first_of(s, model, k), n = posterior.count;
-    *bear = *bear && lead_bears_name(model->part[k]->effect, posterior.mean + at,
-                                     posterior.covariance + at * n + at);
+    *has = *has && has_defining_column(model->part[k]->effect, posterior.mean + at,
+                                       posterior.covariance + at * n + at);
   }
   fg_evidence_posterior_close(&posterior);
   return FG_OK;
 }
 
-static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model *model,
-                             double middle_mm[FG_EVIDENCE_PARTS], bool *bears) {
+static fg_status deserves_names(fg_context *ctx, fg_evidence_search *s,
+                                const fg_evidence_model *model, double middle_mm[FG_EVIDENCE_PARTS],
+                                bool *deserves) {
   fg_evidence_posterior posterior;
-  *bears = true;
+  *deserves = true;
   FG_TRY(fg_evidence_find_posterior(ctx, s, model, &posterior));
   for (size_t k = 0; k < model->parts; k++) {
     const fg_evidence_part *part = model->part[k];
@@ -122,11 +124,12 @@ static fg_status bears_names(fg_context *ctx, fg_evidence_search *s, const fg_ev
     middle_mm[k] = NAN;
     if (!part->effect) continue;
     if (part->effect->polynomial)
-      *bears = *bears && polynomial_bears_name(s, part, mean, covariance, n, &middle_mm[k]);
+      *deserves =
+          *deserves && polynomial_deserves_name(s, part, mean, covariance, n, &middle_mm[k]);
     if (part->effect->polynomial == FG_EFFECT_CUBIC && !holds_scale(model))
-      *bears = *bears && is_cubic_alone(mean, covariance, n, margin_of(s, LEAD_SHARE));
-    *bears = *bears && lead_bears_name(part->effect, mean, covariance);
-    if (part->effect->bends) *bears = *bears && lowest_leads(&s->problem, part, mean);
+      *deserves = *deserves && is_cubic_alone(mean, covariance, n, margin_of(s, LEAD_SHARE));
+    *deserves = *deserves && has_defining_column(part->effect, mean, covariance);
+    if (part->effect->bends) *deserves = *deserves && lowest_leads(&s->problem, part, mean);
   }
   fg_evidence_posterior_close(&posterior);
   return FG_OK;
@@ -173,14 +176,14 @@ static double probability_of_none(const fg_evidence_search *s) {
 
 /* Models that a tie is chosen from. */
 typedef struct tie_range {
-  double floor;                      /* score */
-  const fg_evidence_model *nameless; /* those without a name alone, no larger than this one; NULL:
+  double floor;                     /* score */
+  const fg_evidence_model *unnamed; /* those without a name alone, no larger than this one; NULL:
                                         all */
 } tie_range;
 
 static bool is_in_range(const fg_evidence_model *model, const tie_range *range) {
   if (!model->parts) return false; /* it was refuted */
-  return !range->nameless || (!model->named && model->parts <= range->nameless->parts);
+  return !range->unnamed || (!model->named && model->parts <= range->unnamed->parts);
 }
 
 /* Returns true for a model of all causes of another and some more; on discs also for one of the
@@ -197,15 +200,15 @@ static fg_status list_ties(fg_context *ctx, fg_evidence_search *s, const tie_ran
                            fg_evidence_verdict *v) {
   for (size_t m = 0; m < s->count && v->ties < FG_EVIDENCE_TIES; m++) {
     const fg_evidence_model *model = &s->models[m];
-    bool bears = true, more = false;
+    bool deserves = true, more = false;
     if (model->score < range->floor) break; /* sorted */
     if (!is_in_range(model, range)) continue;
     for (size_t k = 0; k < v->ties && !more; k++)
       more = fg_evidence_includes(model, &v->tie[k]) &&
              !(s->problem.edge_fit->discs && model->parts < v->tie[k].parts);
     if (more) continue;
-    FG_TRY(bears_names(ctx, s, model, v->middle_mm[v->ties], &bears));
-    if (bears) v->tie[v->ties++] = *model;
+    FG_TRY(deserves_names(ctx, s, model, v->middle_mm[v->ties], &deserves));
+    if (deserves) v->tie[v->ties++] = *model;
   }
   /* a smaller one may have come later */
   size_t kept = 0;
@@ -238,10 +241,10 @@ static fg_status take_more(fg_context *ctx, fg_evidence_search *s, const fg_evid
   double middle_mm[FG_EVIDENCE_PARTS];
   for (size_t m = 0; from && s->models[m].score > from->score + FG_EVIDENCE_LEAD; m++) {
     const fg_evidence_model *model = &s->models[m];
-    bool bears = fg_evidence_is_named(model) && fg_evidence_includes(model, from) &&
-                 (is_about(s, from) || is_about(s, model));
-    if (bears) FG_TRY(bears_names(ctx, s, model, middle_mm, &bears));
-    if (!bears) continue;
+    bool deserves = fg_evidence_is_named(model) && fg_evidence_includes(model, from) &&
+                    (is_about(s, from) || is_about(s, model));
+    if (deserves) FG_TRY(deserves_names(ctx, s, model, middle_mm, &deserves));
+    if (!deserves) continue;
     *best = model;
     return FG_OK;
   }
@@ -257,9 +260,9 @@ static fg_status find_best_named(fg_context *ctx, fg_evidence_search *s, bool fa
   const fg_evidence_model *best = NULL;
   for (size_t m = 0; m < s->count && s->models[m].score >= top - margin; m++) {
     const fg_evidence_model *model = &s->models[m];
-    bool bears = fg_evidence_is_named(model) && (!best || (!far && model->parts < best->parts));
-    if (bears) FG_TRY(bears_names(ctx, s, model, middle_mm, &bears));
-    if (bears) best = model;
+    bool deserves = fg_evidence_is_named(model) && (!best || (!far && model->parts < best->parts));
+    if (deserves) FG_TRY(deserves_names(ctx, s, model, middle_mm, &deserves));
+    if (deserves) best = model;
   }
   if (!far) FG_TRY(take_more(ctx, s, &best));
   *score = best ? best->score : -INFINITY;
@@ -319,7 +322,7 @@ static const fg_evidence_model *find_unnamed(const fg_evidence_search *s) {
 
 /* Returns the model of the fewest causes, none of them named, within the margin of the best one;
  * NULL: there is none. */
-static const fg_evidence_model *find_nameless(const fg_evidence_search *s, double margin) {
+static const fg_evidence_model *find_fewest_unnamed(const fg_evidence_search *s, double margin) {
   const fg_evidence_model *best = NULL;
   for (size_t m = 0; m < s->count && s->models[m].score >= s->models[0].score - margin; m++) {
     const fg_evidence_model *model = &s->models[m];
@@ -343,17 +346,17 @@ static size_t fewest_pieces(const fg_evidence_verdict *v) {
 static const fg_evidence_model *find_rival_of_pieces(const fg_evidence_search *s, size_t pieces,
                                                      double margin) {
   if (pieces >= PIECES) return find_unnamed(s);
-  const fg_evidence_model *nameless = find_nameless(s, margin);
-  return nameless && nameless->parts < pieces ? nameless : NULL;
+  const fg_evidence_model *unnamed = find_fewest_unnamed(s, margin);
+  return unnamed && unnamed->parts < pieces ? unnamed : NULL;
 }
 
 /* Names beside what has none are no evidence where that explains as well alone, up to errors of the
  * columns: they are pieces of it. */
 static tie_range choose_range(const fg_evidence_search *s, double named, double margin) {
   if (isfinite(named)) return (tie_range){.floor = named - FG_EVIDENCE_LEAD};
-  const fg_evidence_model *nameless = find_nameless(s, margin);
-  double score = nameless ? nameless->score : s->models[0].score;
-  return (tie_range){score - FG_EVIDENCE_LEAD, nameless};
+  const fg_evidence_model *unnamed = find_fewest_unnamed(s, margin);
+  double score = unnamed ? unnamed->score : s->models[0].score;
+  return (tie_range){score - FG_EVIDENCE_LEAD, unnamed};
 }
 
 /* Returns the score of the likeliest model without any of `count` effects. */
@@ -427,7 +430,7 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *s, bool far,
   return FG_OK;
 }
 
-bool fg_evidence_take_nameless(const fg_evidence_search *s, fg_evidence_verdict *v) {
+bool fg_evidence_choose_unnamed(const fg_evidence_search *s, fg_evidence_verdict *v) {
   const fg_evidence_model *unnamed = find_unnamed(s);
   if (!unnamed) return false;
   v->ties = 0;

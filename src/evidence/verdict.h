@@ -32,10 +32,11 @@ typedef struct fg_evidence_verdict {
 /* Returns true when a model holds all causes of another. */
 bool fg_evidence_includes(const fg_evidence_model *model, const fg_evidence_model *other);
 
-/* `bear`: false where an effect that extends another has 0 for the number of its name. It stands
- * for what no effect is then: a keystone whose middle is far away, for a scale along x. */
-fg_status fg_evidence_leads_bear_names(fg_context *ctx, fg_evidence_search *search,
-                                       const fg_evidence_model *model, bool *bear);
+/* `has`: false where an effect that extends another one has 0, within its uncertainty, in the
+ * column that defines it: then it is no effect of that name, as a keystone without a slope is a
+ * scale. */
+fg_status fg_evidence_has_defining_columns(fg_context *ctx, fg_evidence_search *search,
+                                           const fg_evidence_model *model, bool *has);
 
 /* `far`: the columns were taken so far from where the edges lie that they err; named effects are
  * preferred, about which they can be taken anew. */
@@ -44,6 +45,6 @@ fg_status fg_evidence_decide(fg_context *ctx, fg_evidence_search *search, bool f
 
 /* Takes the likeliest explanation without a name in place of one that cannot be fitted; returns
  * false where there is none. */
-bool fg_evidence_take_nameless(const fg_evidence_search *search, fg_evidence_verdict *verdict);
+bool fg_evidence_choose_unnamed(const fg_evidence_search *search, fg_evidence_verdict *verdict);
 
 #endif

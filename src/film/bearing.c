@@ -34,15 +34,10 @@ fg_film_options fg_film_options_default(void) {
                            .cells_axial = 8,
                            .touching_um = 1,
                            .within_pct = NAN,
-                           .lift_off_rpm = NAN,
-                           .u_lift_off_rpm = 0,
-                           .u_load_n = 0,
-                           .speed_low_rpm = NAN,
-                           .speed_high_rpm = NAN,
-                           .speeds = 25,
-                           .seed = 1,
-                           .shim_low_pct = NAN,
-                           .shim_high_pct = NAN};
+                           .lift_off = {.rpm = NAN},
+                           .map = {.low_rpm = NAN, .high_rpm = NAN, .speeds = 25},
+                           .draw = {.shim_low_pct = NAN, .shim_high_pct = NAN},
+                           .seed = 1};
 }
 
 double fg_film_speed_rad_s(double speed_rpm) {
@@ -80,7 +75,10 @@ static fg_status find_stiffness(fg_context *ctx, fg_film_report *r) {
   }
   const fg_stiffness_model *model = fg_film_stiffness_model(o->model);
   if (!model)
-    return fg_fail(ctx, FG_ERR_USAGE, "no model of a bump's stiffness is called '%s'", o->model);
+    return fg_fail(
+        ctx, FG_ERR_USAGE,
+        "no model of a bump's stiffness is called '%s'; `foilgauge film --help` lists them",
+        o->model);
   const fg_design_bumps *bumps = &r->design.bumps;
   const fg_arch arch =
       fg_design_arch(&r->design, r->design.thickness_mm, bumps->radius_mm, bumps->angle_deg);
@@ -104,13 +102,13 @@ static fg_status complete_options(fg_context *ctx, fg_film_report *r) {
                    pads, o->bumps_per_pad, o->pitch_deg);
   if (!isfinite(o->rotor_mass_kg)) o->rotor_mass_kg = o->load_n / gravity_m_s2;
   if (!isfinite(o->top_foil_mm)) o->top_foil_mm = bumps->top_foil_thickness_mm;
-  if (o->top == FG_FILM_SAGGING && !(o->top_foil_mm > 0))
+  if (o->top_foil == FG_FILM_TOP_FOIL_SAGGING && !(o->top_foil_mm > 0))
     return fg_fail(ctx, FG_ERR_USAGE,
                    "a top foil that sags needs its thickness: the design states none");
-  if (o->top == FG_FILM_SAGGING && o->compliance == 0)
+  if (o->top_foil == FG_FILM_TOP_FOIL_SAGGING && o->compliance == 0)
     return fg_fail(ctx, FG_ERR_USAGE, "a top foil does not sag on rigid bumps: compliance 0");
-  if (!isfinite(o->speed_low_rpm)) o->speed_low_rpm = o->speed_rpm / 4;
-  if (!isfinite(o->speed_high_rpm)) o->speed_high_rpm = o->speed_rpm * 4;
+  if (!isfinite(o->map.low_rpm)) o->map.low_rpm = o->speed_rpm / 4;
+  if (!isfinite(o->map.high_rpm)) o->map.high_rpm = o->speed_rpm * 4;
   return FG_OK;
 }
 
@@ -198,7 +196,7 @@ static double spring_at(const fg_film_report *r, const fg_film *film,
 
 static double bending_of(const fg_film_report *r) {
   const fg_film_options *o = &r->options;
-  if (o->top != FG_FILM_SAGGING) return 0;
+  if (o->top_foil != FG_FILM_TOP_FOIL_SAGGING) return 0;
   double modulus = o->material.youngs_modulus_gpa * 1e3 /
                    (1 - o->material.poisson_ratio * o->material.poisson_ratio);
   double per_width = modulus * pow(o->top_foil_mm, 3) / 12;

@@ -18,7 +18,7 @@ fg_status fg_film_read_foils(fg_context *ctx, fg_film_report *report, fg_film_be
 
 /* Takes clearances and stiffness of a report of `foilgauge stiffness`, which is parsed. */
 struct cJSON;
-fg_status fg_film_take_tested(fg_context *ctx, fg_film_report *report, const struct cJSON *root,
+fg_status fg_film_read_tested(fg_context *ctx, fg_film_report *report, const struct cJSON *root,
                               fg_film_bearing *bearing);
 
 fg_film_mesh fg_film_mesh_of(const fg_film_report *report);
@@ -137,10 +137,10 @@ fg_status fg_film_draw_measured(fg_context *ctx, fg_film_report *report,
  * options ask; the workspace's state is that of the perfect bearing, before and after. */
 fg_status fg_film_find_tolerance(fg_context *ctx, fg_film_report *report,
                                  const fg_film_bearing *perfect, fg_film_workspace *workspace);
-/* Finds on which side a bearing's threshold speed lies, on from the workspace's state. */
-fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *report,
-                            fg_film_workspace *workspace, const fg_film_bearing *bearing,
-                            fg_film_side *side);
+/* Compares a bearing's threshold speed with the perfect one's, on from the workspace's state. */
+fg_status fg_film_compare_threshold(fg_context *ctx, const fg_film_report *report,
+                                    fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                                    fg_film_threshold_verdict *threshold);
 /* Threshold speed of a bearing among the options' speeds; NaN: none. The workspace's film is that
  * below it. */
 fg_status fg_film_find_threshold_speed(fg_context *ctx, const fg_film_report *report,

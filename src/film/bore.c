@@ -103,8 +103,8 @@ static fg_status check_angles(fg_context *ctx, const fg_film_report *r, const bo
   return FG_OK;
 }
 
-static fg_status take_profile(fg_context *ctx, fg_film_report *r, const fg_table *table,
-                              bore_point *points) {
+static fg_status set_bore_profile(fg_context *ctx, fg_film_report *r, const fg_table *table,
+                                  bore_point *points) {
   const fg_extended *angle, *radius;
   double sleeve_mm = r->design.bumps.sleeve_radius_mm;
   FG_TRY(fg_table_numbers(ctx, table, "angle_deg", &angle));
@@ -127,9 +127,12 @@ fg_status fg_film_read_bore(fg_context *ctx, fg_film_report *r) {
   fg_text_clip(r->bore_path, sizeof r->bore_path, "%s", r->options.bore);
   fg_status status = fg_table_load(ctx, r->options.bore, &table, r->bore_sha256);
   if (status == FG_OK && !table.rows)
-    status = fg_fail(ctx, FG_ERR_DATA, "%s: no rows", r->options.bore);
+    status = fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: no rows; a profile of the bore has one per direction, with angle_deg and radius_mm",
+        r->options.bore);
   if (status == FG_OK) status = fg_memory_allocate(ctx, table.rows, sizeof(bore_point), &points);
-  if (status == FG_OK) status = take_profile(ctx, r, &table, points);
+  if (status == FG_OK) status = set_bore_profile(ctx, r, &table, points);
   free(points);
   fg_table_free(&table);
   return status;

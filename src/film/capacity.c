@@ -22,8 +22,8 @@ typedef struct limit_search {
 typedef fg_status film_step(fg_context *, const fg_film_report *, fg_film_workspace *,
                             const fg_film_bearing *, double, fg_film_result *);
 
-static fg_status take_step(fg_context *ctx, const limit_search *search, film_step *step,
-                           double factor, bool *does) {
+static fg_status solve_step(fg_context *ctx, const limit_search *search, film_step *step,
+                            double factor, bool *does) {
   const fg_film_report *r = search->report;
   fg_film_report changed = *r;
   fg_film_result result;
@@ -41,12 +41,12 @@ static fg_status follow_to_end(fg_context *ctx, const limit_search *search, doub
   while (does) {
     bad *= stride;
     if (bad > farthest) return FG_OK;
-    FG_TRY(take_step(ctx, search, fg_film_keep_film, bad, &does));
+    FG_TRY(solve_step(ctx, search, fg_film_keep_film, bad, &does));
     if (does) *good = bad;
   }
   for (int i = 0; i < HALVINGS; i++) {
     double middle = sqrt(*good * bad);
-    FG_TRY(take_step(ctx, search, fg_film_keep_film, middle, &does));
+    FG_TRY(solve_step(ctx, search, fg_film_keep_film, middle, &does));
     *(does ? good : &bad) = middle;
   }
   return FG_OK;
@@ -67,9 +67,9 @@ static fg_status pass_over(fg_context *ctx, const limit_search *search, double *
   for (size_t i = 0; i < sizeof leaps / sizeof *leaps && status == FG_OK && !*passes; i++) {
     double beyond = *good * stride * leaps[i];
     fg_film_mark_return(&end, search->workspace);
-    if (i == 0) status = take_step(ctx, search, fg_film_change_film, beyond, passes);
+    if (i == 0) status = solve_step(ctx, search, fg_film_change_film, beyond, passes);
     if (status == FG_OK && !*passes)
-      status = take_step(ctx, search, fg_film_solve_from_places, beyond, passes);
+      status = solve_step(ctx, search, fg_film_solve_from_places, beyond, passes);
     if (*passes) *good = beyond;
   }
   const double *from = end.state.place;
@@ -114,7 +114,7 @@ static fg_status find_limits(fg_context *ctx, fg_film_report *r, fg_film_workspa
 
 fg_status fg_film_find_capacity(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   fg_film_mark solved;
-  if (r->at.outcome != FG_FILM_SOLVED) return FG_OK;
+  if (r->actual.outcome != FG_FILM_SOLVED) return FG_OK;
   FG_TRY(fg_film_mark_open(ctx, workspace, &solved));
   fg_status status = find_limits(ctx, r, workspace, &solved);
   fg_film_mark_close(&solved);

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/select.h"
-#include "film/kept.h"
+#include "film/draw_file.h"
 #include "film/stock.h"
 #include "foilgauge/density.h"
 #include "foilgauge/memory.h"
@@ -30,7 +30,7 @@ typedef struct draw_task {
   double spread_mm; /* of a tolerance, or */
   bool measured;    /* the clearances' uncertainties */
   fg_film_draws *draws;
-  fg_film_kept *kept; /* NULL: none, and no shard */
+  fg_film_draw_file *file; /* NULL: none, and no shard */
 } draw_task;
 
 /* Streams of random numbers: of shims, of a scatter of every parameter, and of these. */
@@ -58,7 +58,7 @@ static void draw_scatter(const fg_film_report *r, const fg_film_sensitivity *sca
 /* Shims of heights between both ends, of equal probability: a higher one closes the clearance. */
 static void draw_shims(const fg_film_report *r, size_t draw, fg_film_bearing *bearing) {
   uint64_t state = seed_draw(r, STREAM_SHIMS, draw);
-  double low = r->options.shim_low_pct, high = r->options.shim_high_pct;
+  double low = r->options.draw.shim_low_pct, high = r->options.draw.shim_high_pct;
   for (size_t i = 0; i < bearing->count; i++) {
     double height_pct = low + (high - low) * fg_engine_random_uniform(&state);
     bearing->clearance_mm[i] -= height_pct / 100 * r->clearance_um * 1e-3;
@@ -105,19 +105,19 @@ static fg_status find_film(fg_context *ctx, const fg_film_report *r, fg_film_wor
   return FG_OK;
 }
 
-/* Of a tolerance's trial only the side of the threshold is asked. */
+/* Of a tolerance's trial only the threshold speed counts. */
 static fg_status solve_drawn(fg_context *ctx, const draw_task *t, fg_film_workspace *workspace,
                              const fg_film_bearing *bearing, fg_film_result *result) {
   const fg_film_report *r = t->report;
-  fg_film_side side = FG_FILM_NOT_ASKED;
+  fg_film_threshold_verdict threshold = FG_FILM_THRESHOLD_NOT_ASKED;
   bool asked = isfinite(r->tolerance.threshold_rpm) && !t->scatter && !t->measured;
   *result = (fg_film_result){.outcome = FG_FILM_UNSOLVED, .mass_over_perfect = NAN};
   if (!(t->spread_mm > 0)) {
     FG_TRY(find_film(ctx, r, workspace, bearing, result));
     result->mass_over_perfect = fg_film_mass_over(r, result->critical_mass_kg);
   }
-  if (asked) FG_TRY(fg_film_find_side(ctx, r, workspace, bearing, &side));
-  result->side = side;
+  if (asked) FG_TRY(fg_film_compare_threshold(ctx, r, workspace, bearing, &threshold));
+  result->threshold = threshold;
   return FG_OK;
 }
 
@@ -142,11 +142,11 @@ static fg_status solve_draw(fg_context *ctx, const draw_task *t, fg_film_workspa
   return solve_drawn(ctx, t, workspace, &bearing, result);
 }
 
-/* Kept of an earlier run, or of another shard. */
+/* True for a draw of an earlier run or of another shard. */
 static bool is_elsewhere(const draw_task *t, size_t draw) {
   const fg_film_options *o = &t->report->options;
-  if (!t->kept) return false;
-  return t->kept->known[draw] || (o->shards && draw % o->shards != o->shard - 1);
+  if (!t->file) return false;
+  return t->file->known[draw] || (o->draw.shards && draw % o->draw.shards != o->draw.shard - 1);
 }
 
 static fg_status solve_draws(fg_context *ctx, void *shared, size_t item) {
@@ -159,7 +159,8 @@ static fg_status solve_draws(fg_context *ctx, void *shared, size_t item) {
     if (i >= t->draws->count || is_elsewhere(t, i)) continue;
     status = solve_draw(ctx, t, &workspace, i);
     t->draws->result[i].draw = i + 1;
-    if (status == FG_OK && t->kept) status = fg_film_kept_add(ctx, t->kept, &t->draws->result[i]);
+    if (status == FG_OK && t->file)
+      status = fg_film_draw_file_add(ctx, t->file, &t->draws->result[i]);
   }
   fg_film_workspace_close(&workspace);
   return status;
@@ -173,8 +174,9 @@ static void finish_share(fg_film_share *share, size_t of) {
 }
 
 static void count_draw(fg_film_draws *draws, const fg_film_result *result, double perfect_kg) {
-  draws->within.count += result->side == FG_FILM_WITHIN;
-  draws->not_lower.count += result->side == FG_FILM_WITHIN || result->side == FG_FILM_ABOVE;
+  draws->within.count += result->threshold == FG_FILM_THRESHOLD_WITHIN;
+  draws->not_lower.count +=
+      result->threshold == FG_FILM_THRESHOLD_WITHIN || result->threshold == FG_FILM_THRESHOLD_ABOVE;
   if (result->outcome == FG_FILM_UNSOLVED) return;
   draws->solved.count++;
   draws->touching.count += result->outcome == FG_FILM_TOUCHING;
@@ -235,16 +237,16 @@ static void drop_missing(fg_film_draws *draws) {
   draws->count = there;
 }
 
-/* The same with draws of an earlier run, and as a part of them. */
-static fg_status draw_with_kept(fg_context *ctx, draw_task *task, size_t count) {
-  fg_film_kept kept;
+/* Draws that the file of options.draw.keep lacks are solved and added to it. */
+static fg_status draw_with_file(fg_context *ctx, draw_task *task, size_t count) {
+  fg_film_draw_file file;
   fg_context inner;
   FG_TRY(allocate_draws(ctx, count, task->draws));
-  FG_TRY(fg_film_kept_open(ctx, task->report, task->perfect, task->stock, task->draws, &kept));
-  task->kept = &kept;
+  FG_TRY(fg_film_draw_file_open(ctx, task->report, task->perfect, task->stock, task->draws, &file));
+  task->file = &file;
   fg_status status = solve_all_draws(ctx, task);
-  fg_status closed = fg_film_kept_close(&inner, &kept);
-  task->kept = NULL;
+  fg_status closed = fg_film_draw_file_close(&inner, &file);
+  task->file = NULL;
   if (status == FG_OK && closed != FG_OK) return fg_fail(ctx, closed, "%s", inner.message);
   FG_TRY(status);
   drop_missing(task->draws);
@@ -292,22 +294,22 @@ fg_status fg_film_draw_measured(fg_context *ctx, fg_film_report *report,
 fg_status fg_film_draw(fg_context *ctx, fg_film_report *report, const fg_film_bearing *perfect,
                        const fg_film_workspace *solved) {
   fg_film_stock stock;
-  size_t count = report->options.draws;
+  size_t count = report->options.draw.count;
   draw_task task = {
       .report = report, .perfect = perfect, .solved = solved, .draws = &report->draws};
   if (!count) return FG_OK;
-  if (!fg_film_draws_from_lot(&report->options)) return draw_with_kept(ctx, &task, count);
+  if (!fg_film_draws_from_lot(&report->options)) return draw_with_file(ctx, &task, count);
   if (report->options.stock) {
     task.stock = report->options.stock;
     report->draws.foils = task.stock->foils;
     report->draws.left_out = task.stock->left_out;
-    return draw_with_kept(ctx, &task, count);
+    return draw_with_file(ctx, &task, count);
   }
   FG_TRY(fg_film_stock_read(ctx, report, &stock));
   task.stock = &stock;
   report->draws.foils = stock.foils;
   report->draws.left_out = stock.left_out;
-  fg_status status = draw_with_kept(ctx, &task, count);
+  fg_status status = draw_with_file(ctx, &task, count);
   fg_film_stock_free(&stock);
   return status;
 }

@@ -48,7 +48,9 @@ static fg_status read_pad(fg_context *ctx, fg_film_report *r, const cJSON *foil,
     bool fitted = isfinite(clearance);
     if (!fitted && bump) clearance = read_number(bump, "clearance_mm");
     if (!isfinite(clearance))
-      return fg_fail(ctx, FG_ERR_DATA, "%s: bump %zu of foil %zu has no clearance_mm",
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: bump %zu of foil %zu has no clearance_mm, and a film needs all: measure "
+                     "the foil again",
                      r->options.foils, number, pad + 1);
     bearing->clearance_mm[at] = clearance;
     take_u(r, foil, bump, fitted ? "u_clearance_fitted_mm" : "u_clearance_mm", at);
@@ -62,7 +64,7 @@ static fg_status take_foils(fg_context *ctx, fg_film_report *r, const cJSON *roo
   const cJSON *foils = cJSON_GetObjectItemCaseSensitive(root, "foils");
   size_t pads = r->options.pads ? r->options.pads : 1;
   const char *name = cJSON_IsString(schema) ? schema->valuestring : "";
-  if (!strcmp(name, "foilgauge/load_test/1")) return fg_film_take_tested(ctx, r, root, bearing);
+  if (!strcmp(name, "foilgauge/load_test/1")) return fg_film_read_tested(ctx, r, root, bearing);
   if (strcmp(name, "foilgauge/measure/1") != 0)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: not a report of `foilgauge measure` (foilgauge/measure/1), nor of "

@@ -104,7 +104,7 @@ static fg_status find_shifts(fg_context *ctx, const fg_film_report *r, fg_film_w
 
 static fg_status compare_lift_off(fg_context *ctx, const fg_film_report *r,
                                   fg_film_workspace *workspace, fg_film_lift_off *found) {
-  double shift, slopes[2], u_load = r->options.u_load_n / r->options.load_n;
+  double shift, slopes[2], u_load = r->options.lift_off.u_load_n / r->options.load_n;
   FG_TRY(find_shifts(ctx, r, workspace, found->rpm, &shift, slopes));
   found->shift_um = shift * r->clearance_um;
   found->u_by_load_um = u_load > 0 ? fabs(slopes[1]) * u_load : 0;
@@ -119,8 +119,8 @@ static fg_status compare_lift_off(fg_context *ctx, const fg_film_report *r,
 }
 
 fg_status fg_film_hold_lift_off(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
-  if (isnan(r->options.lift_off_rpm)) return FG_OK;
+  if (isnan(r->options.lift_off.rpm)) return FG_OK;
   r->lift_off = (fg_film_lift_off){
-      .asked = true, .rpm = r->options.lift_off_rpm, .u_rpm = r->options.u_lift_off_rpm};
+      .asked = true, .rpm = r->options.lift_off.rpm, .u_rpm = r->options.lift_off.u_rpm};
   return compare_lift_off(ctx, r, workspace, &r->lift_off);
 }

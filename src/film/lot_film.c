@@ -52,7 +52,7 @@ static fg_film_options options_of(const fg_lot_analysis *analysis, const fg_film
   if (settings->film.rotor_mass_kg > 0) options.rotor_mass_kg = settings->film.rotor_mass_kg;
   options.loss_factor = settings->film.loss_factor;
   options.within_pct = settings->film.within_pct;
-  options.draws = settings->film.bearings;
+  options.draw.count = settings->film.bearings;
   options.seed = settings->film.seed;
   options.cells_per_bump = settings->film.cells_per_bump;
   options.cells_axial = settings->film.cells_axial;

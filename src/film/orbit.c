@@ -171,7 +171,7 @@ static int find_orbit_matrix(realtype tau, realtype by_slope, N_Vector y, N_Vect
 }
 
 static fg_status fail_of_memory(fg_context *ctx) {
-  return fg_fail(ctx, FG_ERR_MEMORY, "no memory for the orbit's equations");
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the orbit's equations");
 }
 
 static fg_status open_solver(fg_context *ctx, orbit_problem *p, orbit_solver *s) {

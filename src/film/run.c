@@ -30,9 +30,9 @@ static fg_status find_coefficients(fg_context *ctx, fg_film_report *r,
     double share = 2. * i / (FG_FILM_FREQUENCIES - 1) - 1, ratio = pow(ratio_span, share);
     double complex z[2][2];
     FG_TRY(fg_film_impedance(ctx, &workspace->film, &workspace->at, I * ratio, z));
-    put_coefficients(r, ratio, z, &r->frequency[i]);
+    put_coefficients(r, ratio, z, &r->coefficients[i]);
   }
-  r->frequencies = FG_FILM_FREQUENCIES;
+  r->coefficient_count = FG_FILM_FREQUENCIES;
   return FG_OK;
 }
 
@@ -105,7 +105,7 @@ static fg_status solve_perfect(fg_context *ctx, fg_film_report *r, fg_film_works
 /* The rotor's whirls on the bearing, to which the workspace's state belongs. */
 static fg_status find_modes(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   fg_film_modes modes;
-  FG_TRY(fg_film_find_modes(ctx, r, workspace, &r->at, &modes));
+  FG_TRY(fg_film_find_modes(ctx, r, workspace, &r->actual, &modes));
   r->modes = modes.count;
   for (size_t i = 0; i < modes.count; i++)
     r->mode[i] = modes.mode[i];
@@ -147,18 +147,18 @@ static fg_status run_bearings(fg_context *ctx, fg_film_report *r, fg_film_worksp
   FG_TRY(fg_film_find_sensitivities(ctx, r, &perfect, workspace));
   FG_TRY(fg_film_find_tolerance(ctx, r, &perfect, workspace));
   FG_TRY(fg_film_draw(ctx, r, &perfect, workspace));
-  r->at = r->perfect;
+  r->actual = r->perfect;
   if (fg_film_is_measured(&r->options)) {
     if (r->options.foils && !fg_film_draws_from_lot(&r->options))
       FG_TRY(fg_film_read_foils(ctx, r, &r->bearing));
     fg_film_add_bore(r, &r->bearing);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, &r->bearing, r->options.speed_rpm,
-                                 FG_FILM_ONWARD, &r->at));
-    FG_TRY(choose_film(ctx, r, workspace, &r->bearing, &r->at));
-    r->at.mass_over_perfect = fg_film_mass_over(r, r->at.critical_mass_kg);
-    if (r->at.outcome != FG_FILM_UNSOLVED) FG_TRY(fg_film_find_uncertainty(ctx, r, workspace));
+                                 FG_FILM_ONWARD, &r->actual));
+    FG_TRY(choose_film(ctx, r, workspace, &r->bearing, &r->actual));
+    r->actual.mass_over_perfect = fg_film_mass_over(r, r->actual.critical_mass_kg);
+    if (r->actual.outcome != FG_FILM_UNSOLVED) FG_TRY(fg_film_find_uncertainty(ctx, r, workspace));
   }
-  if (r->at.outcome == FG_FILM_UNSOLVED) return FG_OK;
+  if (r->actual.outcome == FG_FILM_UNSOLVED) return FG_OK;
   FG_TRY(find_modes(ctx, r, workspace));
   FG_TRY(find_coefficients(ctx, r, workspace));
   FG_TRY(keep_field(ctx, r, workspace));
@@ -184,14 +184,14 @@ fg_status fg_film_run(fg_context *ctx, const fg_design *design, const fg_film_op
 }
 
 void fg_film_report_free(fg_film_report *report) {
-  free(report->speed);
+  free(report->by_speed);
   free(report->column);
   free(report->pressure_kpa);
   free(report->draws.result);
   free(report->orbit.point);
-  *report = (fg_film_report){.speeds = 0};
+  *report = (fg_film_report){.speed_count = 0};
 }
 
 int fg_film_exit_code(const fg_film_report *report) {
-  return report->at.outcome == FG_FILM_UNSOLVED ? 2 : 0;
+  return report->actual.outcome == FG_FILM_UNSOLVED ? 2 : 0;
 }

@@ -11,8 +11,8 @@ fg_status fg_film_workspace_open(fg_context *ctx, const fg_film_report *report,
                                  fg_film_workspace *workspace) {
   const fg_film_mesh mesh = fg_film_mesh_of(report);
   *workspace = (fg_film_workspace){.film = {.columns = 0}};
-  fg_status status =
-      fg_film_open(ctx, &mesh, report->options.top == FG_FILM_SAGGING, &workspace->film);
+  fg_status status = fg_film_open(ctx, &mesh, report->options.top_foil == FG_FILM_TOP_FOIL_SAGGING,
+                                  &workspace->film);
   if (status == FG_OK) status = fg_film_case_open(ctx, workspace->film.columns, &workspace->at);
   if (status == FG_OK) status = fg_film_case_open(ctx, workspace->film.columns, &workspace->before);
   if (status == FG_OK)

@@ -82,7 +82,7 @@ fg_status fg_sparse_finish(fg_context *ctx, fg_sparse *sparse) {
   }
   sparse->symbolic = klu_analyze(sparse->size, sparse->column, sparse->row, &sparse->common);
   return sparse->symbolic ? FG_OK
-                          : fg_fail(ctx, FG_ERR_MEMORY, "no memory for the film's equations");
+                          : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the film's equations");
 }
 
 void fg_sparse_free(fg_sparse *sparse) {
@@ -101,8 +101,9 @@ void fg_sparse_free(fg_sparse *sparse) {
 
 static fg_status fail_by_klu(fg_context *ctx, const fg_sparse *sparse) {
   if (sparse->common.status == KLU_OUT_OF_MEMORY)
-    return fg_fail(ctx, FG_ERR_MEMORY, "no memory for the film's equations");
-  return fg_fail(ctx, FG_ERR_NUMERIC, "the film's equations are singular");
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the film's equations");
+  return fg_fail(ctx, FG_ERR_NUMERIC,
+                 "the film's equations are singular: is a clearance or the bore wrong?");
 }
 
 /* Growth of the pivots below which old pivots are not good enough. */

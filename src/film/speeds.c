@@ -115,7 +115,7 @@ static fg_status solve_row(fg_context *ctx, speed_map *map, fg_film_workspace *w
                            bool onward) {
   const fg_film_options *o = &map->report->options;
   double share = map->speeds > 1 ? (double)i / (double)(map->speeds - 1) : 0;
-  double speed_rpm = o->speed_low_rpm * pow(o->speed_high_rpm / o->speed_low_rpm, share);
+  double speed_rpm = o->map.low_rpm * pow(o->map.high_rpm / o->map.low_rpm, share);
   FG_TRY(solve_speed(ctx, map, workspace, speed_rpm, onward, &map->speed[i]));
   fg_film_mark_close(&map->film[i]);
   return fg_film_mark_open(ctx, workspace, &map->film[i]);
@@ -137,8 +137,8 @@ static fg_status close_gaps(fg_context *ctx, speed_map *map, fg_film_workspace *
 static fg_status solve_rows(fg_context *ctx, speed_map *map, fg_film_workspace *workspace,
                             const fg_film_mark *own) {
   const fg_film_options *o = &map->report->options;
-  double range = log(o->speed_high_rpm / o->speed_low_rpm);
-  double place = log(o->speed_rpm / o->speed_low_rpm) / range * (double)(map->speeds - 1);
+  double range = log(o->map.high_rpm / o->map.low_rpm);
+  double place = log(o->speed_rpm / o->map.low_rpm) / range * (double)(map->speeds - 1);
   size_t first = (size_t)fmax(0, fmin((double)map->speeds, ceil(place - 1e-9)));
   bool onward = true;
   for (size_t i = first; i < map->speeds; i++) {
@@ -155,7 +155,7 @@ static fg_status solve_rows(fg_context *ctx, speed_map *map, fg_film_workspace *
 }
 
 static fg_status solve_speed_map(fg_context *ctx, speed_map *map, fg_film_workspace *workspace) {
-  size_t speeds = map->report->options.speeds;
+  size_t speeds = map->report->options.map.speeds;
   fg_film_mark own;
   void *block;
   FG_TRY(fg_memory_allocate(ctx, speeds, sizeof *map->speed, &block));
@@ -187,8 +187,8 @@ static fg_status find_both_thresholds(fg_context *ctx, fg_film_report *r, speed_
 fg_status fg_film_map_speeds(fg_context *ctx, fg_film_report *r, fg_film_workspace *workspace) {
   speed_map map = {.report = r, .bearing = &r->bearing, .with_modes = true};
   fg_status status = solve_speed_map(ctx, &map, workspace);
-  r->speed = map.speed;
-  r->speeds = map.speeds;
+  r->by_speed = map.speed;
+  r->speed_count = map.speeds;
   if (status == FG_OK) status = find_both_thresholds(ctx, r, &map, workspace);
   close_films(&map);
   return status;

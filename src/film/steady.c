@@ -92,7 +92,8 @@ static void apply_step(const fg_film *film, fg_film_state *state, const double *
 }
 
 static fg_status fail_to_converge(fg_context *ctx) {
-  return fg_fail(ctx, FG_ERR_NUMERIC, "the film's pressure was not found");
+  return fg_fail(ctx, FG_ERR_NUMERIC,
+                 "the film's pressure does not converge: lower the load, or raise the speed");
 }
 
 fg_status fg_film_newton(fg_context *ctx, fg_film *film, const fg_film_case *at,

@@ -47,8 +47,8 @@ static fg_status read_axis(fg_context *ctx, const fg_film_report *r, const cJSON
       return fg_fail(ctx, FG_ERR_DATA, "%s: the axis of azimuth %g is there twice",
                      r->options.foils, number_of(item, "azimuth_deg"));
   if (tested->count == TESTED_AXES_MAX)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: more than %d azimuths", r->options.foils,
-                   TESTED_AXES_MAX);
+    return fg_fail(ctx, FG_ERR_DATA, "%s: more than %d azimuths; test the bearing at fewer",
+                   r->options.foils, TESTED_AXES_MAX);
   tested->axis[tested->count++] = axis;
   return FG_OK;
 }
@@ -58,10 +58,15 @@ static fg_status read_axes(fg_context *ctx, const fg_film_report *r, const cJSON
   const cJSON *item, *axes = cJSON_GetObjectItemCaseSensitive(root, "azimuths");
   int bearings = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(root, "bearings"));
   if (bearings != 1)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: %d bearings; test the one of the film alone",
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: the report is of %d bearings, and a film is of one: test that one alone",
                    r->options.foils, bearings);
   cJSON_ArrayForEach(item, axes) FG_TRY(read_axis(ctx, r, item, tested));
-  return tested->count ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "%s: no azimuths", r->options.foils);
+  return tested->count
+             ? FG_OK
+             : fg_fail(ctx, FG_ERR_DATA,
+                       "%s: no azimuths; a film needs the gap and stiffness of one at least",
+                       r->options.foils);
 }
 
 /* Linear between the axes beside an azimuth, which go round in half a turn. */
@@ -95,7 +100,7 @@ static double bump_stiffness(const fg_film_report *r, const tested_axis *axis) {
   return axis->stiffness_n_mm / (r->length_mm * bumps_per_rad * (reach + sin(reach) * cosine));
 }
 
-fg_status fg_film_take_tested(fg_context *ctx, fg_film_report *r, const cJSON *root,
+fg_status fg_film_read_tested(fg_context *ctx, fg_film_report *r, const cJSON *root,
                               fg_film_bearing *bearing) {
   tested_bearing tested = {.count = 0};
   if (r->options.bore)

@@ -3,7 +3,7 @@
  * bearings, and of all bumps alike.
  *
  * A bearing's threshold speed is not solved for. Below it the critical mass is above the rotor's:
- * the highest of some speeds at which that is so tells its side. */
+ * the highest of some speeds at which that is so decides. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,20 +12,22 @@
 /* Bearings of a trial, the share of them that must keep it, and steps to a tolerance. */
 enum { TRIAL_DRAWS = 40, DOUBLINGS = 8, REFINEMENTS = 2 };
 /* Steps of the speed over the interval. */
-enum { SIDE_STEPS = 4 };
+enum { INTERVAL_STEPS = 4 };
 static const double share_kept = 0.95;
 
-/* Of the interval's ends the upper one tells ABOVE, and the lower one nearly always the rest. */
-static const int side_order[] = {0, SIDE_STEPS, 1, 2, 3};
+/* Order of the steps: the upper end of the interval decides ABOVE, and the lower one nearly always
+ * the others. */
+static const int step_order[] = {0, INTERVAL_STEPS, 1, 2, 3};
 
 /* Each speed is gone to from the film that the bearing has: from one speed to another it might be
  * on another film. */
-static fg_status find_side_from(fg_context *ctx, const fg_film_report *r,
-                                fg_film_workspace *workspace, const fg_film_bearing *bearing,
-                                const fg_film_mark *own, fg_film_side *side) {
-  for (int i = 0; i <= SIDE_STEPS; i++) {
+static fg_status compare_threshold_from(fg_context *ctx, const fg_film_report *r,
+                                        fg_film_workspace *workspace,
+                                        const fg_film_bearing *bearing, const fg_film_mark *own,
+                                        fg_film_threshold_verdict *threshold) {
+  for (int i = 0; i <= INTERVAL_STEPS; i++) {
     fg_film_result at;
-    double share = r->options.within_pct / 100 * (1 - 2. * side_order[i] / SIDE_STEPS);
+    double share = r->options.within_pct / 100 * (1 - 2. * step_order[i] / INTERVAL_STEPS);
     double rpm = r->tolerance.threshold_rpm * (1 + share);
     fg_film_mark_return(own, workspace);
     FG_TRY(fg_film_solve_bearing(ctx, r, workspace, bearing, rpm, FG_FILM_ONWARD, &at));
@@ -33,19 +35,20 @@ static fg_status find_side_from(fg_context *ctx, const fg_film_report *r,
       FG_TRY(fg_film_seek_film(ctx, r, workspace, bearing, rpm, &at));
     if (at.outcome != FG_FILM_SOLVED) return FG_OK;
     if (!fg_film_is_stable(&at, r->options.rotor_mass_kg)) continue;
-    *side = i ? FG_FILM_WITHIN : FG_FILM_ABOVE;
+    *threshold = i ? FG_FILM_THRESHOLD_WITHIN : FG_FILM_THRESHOLD_ABOVE;
     return FG_OK;
   }
-  *side = FG_FILM_BELOW;
+  *threshold = FG_FILM_THRESHOLD_BELOW;
   return FG_OK;
 }
 
-fg_status fg_film_find_side(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
-                            const fg_film_bearing *bearing, fg_film_side *side) {
+fg_status fg_film_compare_threshold(fg_context *ctx, const fg_film_report *r,
+                                    fg_film_workspace *workspace, const fg_film_bearing *bearing,
+                                    fg_film_threshold_verdict *threshold) {
   fg_film_mark own;
-  *side = FG_FILM_NO_FILM;
+  *threshold = FG_FILM_THRESHOLD_NO_FILM;
   FG_TRY(fg_film_mark_open(ctx, workspace, &own));
-  fg_status status = find_side_from(ctx, r, workspace, bearing, &own, side);
+  fg_status status = compare_threshold_from(ctx, r, workspace, bearing, &own, threshold);
   fg_film_mark_return(&own, workspace);
   fg_film_mark_close(&own);
   return status;
@@ -70,11 +73,11 @@ typedef struct tolerance_trial {
 
 static fg_status try_alike(fg_context *ctx, const tolerance_trial *t, double um, bool *kept) {
   fg_film_bearing moved = *t->perfect;
-  fg_film_side side;
+  fg_film_threshold_verdict threshold;
   for (size_t i = 0; i < moved.count; i++)
     moved.clearance_mm[i] += t->sign * um * 1e-3;
-  FG_TRY(fg_film_find_side(ctx, t->report, t->workspace, &moved, &side));
-  *kept = side == FG_FILM_WITHIN;
+  FG_TRY(fg_film_compare_threshold(ctx, t->report, t->workspace, &moved, &threshold));
+  *kept = threshold == FG_FILM_THRESHOLD_WITHIN;
   return FG_OK;
 }
 

@@ -56,7 +56,7 @@ static bool has_u(const fg_film_report *r) {
 
 fg_status fg_film_find_uncertainty(fg_context *ctx, fg_film_report *r,
                                    const fg_film_workspace *workspace) {
-  fg_film_uncertainty *u = &r->u;
+  fg_film_uncertainty *u = &r->uncertainty;
   fg_film_draws draws;
   if (!has_u(r)) return FG_OK;
   fg_status status = fg_film_draw_measured(ctx, r, workspace, U_DRAWS, &draws);

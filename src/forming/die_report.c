@@ -25,7 +25,8 @@ static fg_status read_die_number(fg_context *ctx, const cJSON *object, const cha
 static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_forming_die *die) {
   double number = 0;
   if (die->count == FG_FORMING_BUMPS_MAX)
-    return fg_fail(ctx, FG_ERR_DATA, "more than %d bumps", FG_FORMING_BUMPS_MAX);
+    return fg_fail(ctx, FG_ERR_DATA, "the die has more than %d bumps, the most that can be formed",
+                   FG_FORMING_BUMPS_MAX);
   FG_TRY(read_die_number(ctx, item, "number", 0, 1e6, &number));
   FG_TRY(read_die_number(ctx, item, "radius_mm", 0, 1e4, &die->bump[die->count].radius_mm));
   FG_TRY(
@@ -40,11 +41,13 @@ static fg_status check_design(fg_context *ctx, const cJSON *of, const fg_design 
   double thickness = 0;
   FG_TRY(read_die_number(ctx, of, "thickness_mm", 0, 1e4, &thickness));
   if (fabs(thickness - design->thickness_mm) > 1e-9)
-    return fg_fail(ctx, FG_ERR_DATA, "the die was measured for a strip of %g mm, not %g", thickness,
-                   design->thickness_mm);
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "the die was measured for a strip of %g mm, not %g: measure it with this design",
+                   thickness, design->thickness_mm);
   static const char *const words[] = {"mid", "inner", "outer"};
   if (!cJSON_IsString(datum) || strcmp(datum->valuestring, words[design->datum]) != 0)
-    return fg_fail(ctx, FG_ERR_DATA, "the die's datum is not the design's, %s",
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "the die's datum is not the design's, %s: measure it with this design",
                    words[design->datum]);
   return FG_OK;
 }

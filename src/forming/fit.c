@@ -145,7 +145,9 @@ static fg_status fit_all(fg_forming_search *s, gsl_vector *x, gsl_matrix *invers
   double min;
   FG_TRY(fg_forming_search_all(s, NULL, x, &min, inverse));
   if (!(min < INFINITY))
-    return fg_fail(s->ctx, FG_ERR_DATA, "no values of the constants predict these runs");
+    return fg_fail(
+        s->ctx, FG_ERR_DATA,
+        "no values of the constants predict these runs: check their units, and the design");
   fit->model =
       (fg_forming_errors){.residual_sd = sqrt(min / (double)(fg_forming_search_rows(s) - s->free)),
                           .parameters = s->free};
@@ -272,13 +274,15 @@ static fg_status check_request(fg_context *ctx, const fg_table *table,
   for (size_t k = 0; k < request->free_count; k++)
     for (size_t j = 0; j < k; j++)
       if (request->free[j] == request->free[k])
-        return fg_fail(ctx, FG_ERR_USAGE, "%s is to be found twice",
+        return fg_fail(ctx, FG_ERR_USAGE, "%s is to be found, and named twice",
                        fg_forming_constant_of(request->free[k])->name);
   if (table->rows < request->free_count + 2)
     return fg_fail(ctx, FG_ERR_DATA, "%s: %zu runs; to find %zu constants takes %zu at least",
                    table->source, table->rows, request->free_count, request->free_count + 2);
   if (fg_foil_traits_of(request->design->kind)->why_no_forming)
-    return fg_fail(ctx, FG_ERR_DATA, "the design's form has no strip that is bent");
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "the design's foil is not bent in a die (its form), so that it cannot be formed");
   return fg_forming_material_check(ctx, request->material);
 }
 

@@ -221,14 +221,15 @@ static fg_status copy_schedule(fg_context *ctx, const fg_forming_schedule *from,
   return FG_OK;
 }
 
-static fg_status take_options(fg_context *ctx, const fg_forming_options *options,
-                              fg_forming *forming) {
+static fg_status set_options(fg_context *ctx, const fg_forming_options *options,
+                             fg_forming *forming) {
   if (options) forming->options = *options;
   fg_forming_options *own = &forming->options;
   if (!own->layers) own->layers = LAYERS;
   if (!own->steps) own->steps = STEPS;
   if (own->layers > MAX || own->steps > MAX)
-    return fg_fail(ctx, FG_ERR_USAGE, "at most %d layers and steps", MAX);
+    return fg_fail(ctx, FG_ERR_USAGE, "%zu layers and %zu steps: at most %d of each", own->layers,
+                   own->steps, MAX);
   if (own->die) {
     forming->die = *own->die;
     own->die = &forming->die;
@@ -241,7 +242,7 @@ fg_status fg_forming_bend(fg_context *ctx, const fg_design *design,
                           const fg_forming_options *options, fg_forming *forming) {
   fg_numerics_start();
   *forming = (fg_forming){.design = *design, .material = *material};
-  FG_TRY(take_options(ctx, options, forming));
+  FG_TRY(set_options(ctx, options, forming));
   FG_TRY(fg_design_derive(ctx, design, &forming->nominal));
   FG_TRY(fg_forming_material_check(ctx, material));
   FG_TRY(copy_schedule(ctx, schedule, &forming->schedule));

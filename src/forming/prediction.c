@@ -21,7 +21,7 @@ static fg_status read_bump(fg_context *ctx, const cJSON *item, fg_bump *bump) {
   const cJSON *number = cJSON_GetObjectItemCaseSensitive(item, "number");
   if (!cJSON_IsNumber(number) || number->valuedouble != floor(number->valuedouble) ||
       fabs(number->valuedouble) > 1e6)
-    return fg_fail(ctx, FG_ERR_DATA, "a bump without a number");
+    return fg_fail(ctx, FG_ERR_DATA, "a member of bumps has no whole number `number`");
   *bump = (fg_bump){.number = (int)number->valuedouble};
   for (size_t i = 0; i < count; i++) {
     const cJSON *value = cJSON_GetObjectItemCaseSensitive(item, rows[i].name);
@@ -44,11 +44,13 @@ static fg_status read_prediction_root(fg_context *ctx, const cJSON *root,
     return fg_fail(ctx, FG_ERR_DATA, "not a report of `foilgauge forming -o`");
   cJSON_ArrayForEach(bump, cJSON_GetObjectItemCaseSensitive(root, "bumps")) {
     if (prediction->count == FG_FORMING_BUMPS_MAX)
-      return fg_fail(ctx, FG_ERR_DATA, "more than %d bumps", FG_FORMING_BUMPS_MAX);
+      return fg_fail(ctx, FG_ERR_DATA, "bumps has more than %d members", FG_FORMING_BUMPS_MAX);
     FG_TRY(read_bump(ctx, bump, &prediction->bump[prediction->count]));
     prediction->count++;
   }
-  return prediction->count ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "a strip without bumps");
+  return prediction->count
+             ? FG_OK
+             : fg_fail(ctx, FG_ERR_DATA, "bumps is missing or empty: form a design with bumps");
 }
 
 fg_status fg_forming_prediction_load(fg_context *ctx, const char *path,

@@ -43,8 +43,9 @@ static fg_status copy_schedule(fg_context *ctx, const fg_table *table,
       return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: time_h is %g after %g; it must rise",
                      table->source, i + 1, time[i].value, time[i - 1].value);
     if (!(temperature[i].value > -273.15))
-      return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: temperature_C is %g", table->source, i + 1,
-                     temperature[i].value);
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: row %zu: temperature_C is %g, below absolute zero: degrees Celsius",
+                     table->source, i + 1, temperature[i].value);
   }
   return FG_OK;
 }

@@ -142,7 +142,9 @@ fg_status fg_forming_lay_out(fg_context *ctx, fg_forming *forming) {
   const fg_foil_traits *kind = fg_foil_traits_of(design->kind);
   if (kind->is_plain_strip) return lay_arc(ctx, forming);
   if (!kind->has_bumps)
-    return fg_fail(ctx, FG_ERR_DATA, "the design's form has no strip that is bent");
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "the design's foil is not bent in a die (its form), so that it cannot be formed");
   forming->bump_count = design->bumps.count ? design->bumps.count : FG_FORMING_BUMPS_DEFAULT;
   if (forming->bump_count > FG_FORMING_BUMPS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "bump_count is %zu; at most %d here", forming->bump_count,

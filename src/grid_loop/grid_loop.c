@@ -156,9 +156,9 @@ static fg_status close_grid_loop(fg_context *ctx, fg_grid_loop *loop) {
   FG_TRY(build_model(ctx, &loop->problem));
   FG_TRY(fg_grid_solve(ctx, &loop->problem, GRID_ALL_ROWS, &loop->solution));
   loop->widening = find_widening(&loop->problem);
-  FG_TRY(fg_grid_loop_tell(ctx, loop));
+  FG_TRY(fg_grid_loop_fill_result(ctx, loop));
   FG_TRY(fg_grid_loop_hold_out(ctx, loop));
-  fg_grid_loop_say(&loop->result);
+  fg_grid_loop_write_sentence(&loop->result);
   return fg_grid_loop_make_model(ctx, loop);
 }
 

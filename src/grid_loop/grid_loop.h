@@ -18,9 +18,9 @@ struct fg_grid_loop {
 };
 
 /* Fills the result from the final solution. */
-fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop);
+fg_status fg_grid_loop_fill_result(fg_context *ctx, fg_grid_loop *loop);
 /* Sentence and advice. */
-void fg_grid_loop_say(fg_grid_loop_result *result);
+void fg_grid_loop_write_sentence(fg_grid_loop_result *result);
 /* rms of the marks before and after, and on marks that no fit saw: of scans held out, if any. */
 fg_status fg_grid_loop_hold_out(fg_context *ctx, fg_grid_loop *loop);
 /* Makes the scanner's model: effects and map with their uncertainty. */

@@ -192,7 +192,7 @@ fg_status fg_grid_loop_make_model(fg_context *ctx, fg_grid_loop *loop) {
   model->scans = loop->scan_count;
   model->known_grids = loop->result.scale_known ? loop->scan_count : 0;
   model->artefact = first->design.artefact;
-  fg_scanner_model_take_temperature(&first->design.calibration, model);
+  fg_scanner_model_set_temperature(&first->design.calibration, model);
   make_fields(loop, model);
   if (loop->problem.model.has_map && loop->result.axes_known) FG_TRY(make_map(ctx, loop, model));
   return FG_OK;

@@ -172,7 +172,7 @@ static void add_scatter(const side *s, size_t at, fg_load_scatter *scatter) {
 }
 
 /* The largest slope: of each half where the other has it. */
-static void take_largest(const side *s, fg_load_direction *direction, fg_load_scatter *scatter) {
+static void keep_largest(const side *s, fg_load_direction *direction, fg_load_scatter *scatter) {
   size_t at = steepest(s, WHOLE), odd = steepest(s, EVEN), even = steepest(s, ODD);
   if (!s->known[at]) return;
   double largest = (s->fit[ODD][odd].slope + s->fit[EVEN][even].slope) / 2;
@@ -199,7 +199,7 @@ fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes
       place_points(direction, which, strokes->noise_mm, s);
       fit_slopes(s);
       write_stiffness_profile(s, &direction->profile[which]);
-      take_largest(s, direction, &findings->slopes);
+      keep_largest(s, direction, &findings->slopes);
     }
     free_side(s);
     FG_TRY(status);

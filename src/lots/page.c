@@ -261,8 +261,8 @@ static fg_status put_index_provenance(fg_context *ctx, FILE *out, const fg_index
   size_t stated = 0;
   for (size_t i = 0; i < index->read; i++) {
     const fg_index_lot *lot = &index->lots[i];
-    fg_provenance_take_date(&from, lot->date.first);
-    fg_provenance_take_date(&from, lot->date.last);
+    fg_provenance_include_date(&from, lot->date.first);
+    fg_provenance_include_date(&from, lot->date.last);
     stated += lot->design.calibration.stated;
     if (lot->design_number != index->lots[0].design_number) from.design = NULL;
   }

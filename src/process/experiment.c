@@ -66,7 +66,9 @@ static fg_status write_formula(fg_context *ctx, const fg_experiment_options *opt
   char *right = NULL;
   const char *response = options->response ? options->response : parsed->response;
   if (!response)
-    return fg_fail(ctx, FG_ERR_USAGE, "which column is the response? (--response NAME)");
+    return fg_fail(
+        ctx, FG_ERR_USAGE,
+        "the formula names no response: say which column was measured by --response NAME");
   FG_TRY(fg_text_print(ctx, &e->response, "%s", response));
   FG_TRY(fg_formula_format(ctx, parsed, &right));
   fg_status status =

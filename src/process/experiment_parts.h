@@ -43,7 +43,7 @@ fg_status fg_experiment_reduce(fg_context *ctx, const fg_table *runs,
 
 /* Adds the half-spaces of the whole experiment's region. A factor that is left out gets the value
  * of its range that restricts the others least. */
-void fg_experiment_take_constraints(const fg_experiment *whole, fg_experiment *experiment);
+void fg_experiment_add_constraints(const fg_experiment *whole, fg_experiment *experiment);
 
 /* Adds "2*a + b <= 3" (real units) to the region as a half-space in the model's units. */
 fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experiment,

@@ -300,7 +300,7 @@ static size_t axis_of(const fg_experiment *e, const char *column) {
   return k;
 }
 
-void fg_experiment_take_constraints(const fg_experiment *whole, fg_experiment *e) {
+void fg_experiment_add_constraints(const fg_experiment *whole, fg_experiment *e) {
   const fg_region *from = &whole->region;
   fg_region *to = &e->region;
   for (size_t p = 0; p < from->planes; p++) {

@@ -60,7 +60,7 @@ static fg_status make_region(fg_context *ctx, const fg_experiment_options *optio
     e->constraints++;
     if (!whole) FG_TRY(fg_experiment_constrain(ctx, e, options->constraint[i], &e->region));
   }
-  if (whole) fg_experiment_take_constraints(whole, e);
+  if (whole) fg_experiment_add_constraints(whole, e);
   memcpy(centre, e->region.centre, sizeof centre);
   if (fg_region_project(ctx, &e->region, centre) == FG_OK) return FG_OK;
   return fg_fail(ctx, FG_ERR_USAGE,

@@ -34,8 +34,10 @@ static fg_status read_line_member(const fg_place *place, const cJSON *object,
   double values[FG_COLOUR_LINES];
   int count;
   if (!item) return FG_OK;
-  FG_TRY(fg_member_numbers(place, member->name, item, member->low, member->high, FG_COLOUR_LINES,
-                           FG_COLOUR_LINES, values, &count));
+  FG_TRY(fg_member_numbers(
+      place, member->name, item,
+      (fg_array_limits){member->low, member->high, FG_COLOUR_LINES, FG_COLOUR_LINES}, values,
+      &count));
   for (int i = 0; i < FG_COLOUR_LINES; i++)
     *(double *)((char *)&lines->line[i] + member->offset) = values[i];
   return FG_OK;

@@ -34,7 +34,8 @@ static fg_status read_missing_marks(const fg_place *place, const cJSON *array,
     int count;
     if (request->missing_count == FG_GRID_MISSING_MAX)
       return fg_member_fail(place, "missing", NULL, "at most 64 marks can be missing");
-    FG_TRY(fg_member_numbers(place, "missing", item, 0, 1e5, 2, 2, index, &count));
+    FG_TRY(
+        fg_member_numbers(place, "missing", item, (fg_array_limits){0, 1e5, 2, 2}, index, &count));
     request->missing[request->missing_count][0] = (int)index[0];
     request->missing[request->missing_count++][1] = (int)index[1];
   }
@@ -63,8 +64,8 @@ static fg_status read_grid(const fg_place *place, const cJSON *grid, fg_grid_req
   int count;
   FG_TRY(fg_members_read(place, grid, table, request));
   FG_TRY(read_marks_word(place, fg_spec_member(grid, "marks"), &request->marks));
-  FG_TRY(fg_member_numbers(place, "centre_mm", fg_spec_member(grid, "centre_mm"), -1e4, 1e4, 2, 2,
-                           request->centre_mm, &count));
+  FG_TRY(fg_member_numbers(place, "centre_mm", fg_spec_member(grid, "centre_mm"),
+                           (fg_array_limits){-1e4, 1e4, 2, 2}, request->centre_mm, &count));
   FG_TRY(read_missing_marks(place, fg_spec_member(grid, "missing"), request));
   if (request->marks == FG_GRID_LINES) request->rows = 1;
   if (isnan(request->mark_mm))

@@ -54,8 +54,9 @@ static fg_status fill_named(const fg_place *place, const cJSON *array, double am
                             fg_lift *lift) {
   double numbers[FG_LIFT_BUMPS_MAX];
   int count = 0;
-  FG_TRY(fg_member_numbers(place, "bumps", array, 1, FG_LIFT_BUMPS_MAX, 1, FG_LIFT_BUMPS_MAX,
-                           numbers, &count));
+  FG_TRY(fg_member_numbers(place, "bumps", array,
+                           (fg_array_limits){1, FG_LIFT_BUMPS_MAX, 1, FG_LIFT_BUMPS_MAX}, numbers,
+                           &count));
   for (int i = 0; i < count; i++) {
     int bump = (int)numbers[i];
     if (numbers[i] != floor(numbers[i]))
@@ -91,9 +92,9 @@ fg_status fg_lift_parse(const fg_place *place, const cJSON *object, fg_lift *lif
     return fill_named(place, cJSON_GetObjectItemCaseSensitive(object, "bumps"),
                       request.amplitude_um, lift);
   if (has_member(object, "values_um"))
-    return fg_member_numbers(place, "values_um",
-                             cJSON_GetObjectItemCaseSensitive(object, "values_um"), -50, 50, 1,
-                             FG_LIFT_BUMPS_MAX, lift->um, &lift->last);
+    return fg_member_numbers(
+        place, "values_um", cJSON_GetObjectItemCaseSensitive(object, "values_um"),
+        (fg_array_limits){-50, 50, 1, FG_LIFT_BUMPS_MAX}, lift->um, &lift->last);
   if (request.every && !request.first) request.first = request.every;
   fill_pattern(&request, lift);
   return FG_OK;

@@ -43,19 +43,19 @@ fg_status fg_member_number(const fg_place *place, const char *name, const cJSON 
   return FG_OK;
 }
 
-fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
-                            double high, int min, int max, double *values, int *count) {
+fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item,
+                            fg_array_limits limits, double *values, int *count) {
   char what[96];
-  snprintf(what, sizeof what, "must be an array of %d to %d numbers", min, max);
+  snprintf(what, sizeof what, "must be an array of %d to %d numbers", limits.min, limits.max);
   if (!cJSON_IsArray(item)) return fg_member_fail(place, name, item, what);
   int size = cJSON_GetArraySize(item);
-  if (size < min || size > max) return fg_member_fail(place, name, item, what);
+  if (size < limits.min || size > limits.max) return fg_member_fail(place, name, item, what);
   int index = 0;
   const cJSON *entry;
   cJSON_ArrayForEach(entry, item) {
     char numbered[80];
     snprintf(numbered, sizeof numbered, "%.50s[%d]", name, index);
-    FG_TRY(fg_member_number(place, numbered, entry, low, high, &values[index]));
+    FG_TRY(fg_member_number(place, numbered, entry, limits.low, limits.high, &values[index]));
     index++;
   }
   *count = size;

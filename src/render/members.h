@@ -48,9 +48,15 @@ fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_s
 fg_status fg_member_number(const fg_place *place, const char *name, const cJSON *item, double low,
                            double high, double *value);
 
-/* Reads an array of numbers; *count is their number, at least `min`, at most `max`. */
-fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
-                            double high, int min, int max, double *values, int *count);
+/* Allowed values and lengths of an array of numbers. */
+typedef struct fg_array_limits {
+  double low, high; /* of a number, both allowed */
+  int min, max;     /* numbers in the array, both allowed */
+} fg_array_limits;
+
+/* Reads an array of numbers; *count is their number. */
+fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item,
+                            fg_array_limits limits, double *values, int *count);
 
 /* Reads one of two words, as its number; absent: *choice stays. */
 fg_status fg_member_choice(const fg_place *place, const cJSON *object, const char *name,

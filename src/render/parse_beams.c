@@ -51,7 +51,8 @@ static fg_status read_each(const fg_place *place, const cJSON *beams, const char
   int given;
   if (!item) return FG_OK;
   if (!cJSON_IsNumber(item))
-    return fg_member_numbers(place, name, item, -limit, limit, count, count, values, &given);
+    return fg_member_numbers(place, name, item, (fg_array_limits){-limit, limit, count, count},
+                             values, &given);
   FG_TRY(fg_member_number(place, name, item, -limit, limit, &values[0]));
   for (int i = 1; i < count; i++)
     values[i] = values[0];
@@ -64,7 +65,8 @@ static fg_status read_missing(const fg_place *place, const cJSON *beams, int cou
   const cJSON *array = fg_spec_member(beams, "missing");
   int given = 0;
   if (!array) return FG_OK;
-  FG_TRY(fg_member_numbers(place, "missing", array, 1, count, 0, count, numbers, &given));
+  FG_TRY(fg_member_numbers(place, "missing", array, (fg_array_limits){1, count, 0, count}, numbers,
+                           &given));
   for (int i = 0; i < given; i++)
     request->missing[(int)numbers[i] - 1] = true;
   return FG_OK;

@@ -69,8 +69,9 @@ static fg_status read_missing(const fg_place *place, const cJSON *array, fg_foil
   double numbers[FG_RENDER_BUMPS_MAX];
   int count = 0;
   if (!array) return FG_OK;
-  FG_TRY(fg_member_numbers(place, "missing", array, 1, request->design.bump_count, 0,
-                           FG_RENDER_BUMPS_MAX, numbers, &count));
+  FG_TRY(fg_member_numbers(place, "missing", array,
+                           (fg_array_limits){1, request->design.bump_count, 0, FG_RENDER_BUMPS_MAX},
+                           numbers, &count));
   for (int i = 0; i < count; i++)
     request->missing[(int)numbers[i] - 1] = true;
   return FG_OK;
@@ -107,7 +108,8 @@ static fg_status read_list(const fg_place *place, const cJSON *foil, const char 
                            double high, int bumps, double *values) {
   int count;
   const cJSON *array = fg_spec_member(foil, name);
-  return array ? fg_member_numbers(place, name, array, low, high, bumps, bumps, values, &count)
+  return array ? fg_member_numbers(place, name, array, (fg_array_limits){low, high, bumps, bumps},
+                                   values, &count)
                : FG_OK;
 }
 
@@ -197,8 +199,8 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
   int count;
   const cJSON *centre = fg_spec_member(foil, "centre_mm");
   if (centre)
-    FG_TRY(
-        fg_member_numbers(place, "centre_mm", centre, -1e4, 1e4, 2, 2, request->centre_mm, &count));
+    FG_TRY(fg_member_numbers(place, "centre_mm", centre, (fg_array_limits){-1e4, 1e4, 2, 2},
+                             request->centre_mm, &count));
   if (isnan(request->overall_radius_mm))
     request->overall_radius_mm = request->design.overall_radius_mm;
   if (!request->design.arc && !isnan(request->subtended_angle_deg))
@@ -236,8 +238,8 @@ static fg_status read_disc(const fg_place *place, const cJSON *disc, fg_disc_req
   *request = (fg_disc_request){.radius_mm = NAN};
   FG_TRY(fg_members_read(place, disc, table, request));
   int count;
-  FG_TRY(fg_member_numbers(place, "centre_mm", fg_spec_member(disc, "centre_mm"), -1e4, 1e4, 2, 2,
-                           request->centre_mm, &count));
+  FG_TRY(fg_member_numbers(place, "centre_mm", fg_spec_member(disc, "centre_mm"),
+                           (fg_array_limits){-1e4, 1e4, 2, 2}, request->centre_mm, &count));
   if (isnan(request->radius_mm)) return fg_member_fail(place, "radius_mm", NULL, "a disc needs it");
   return FG_OK;
 }

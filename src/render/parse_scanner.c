@@ -100,7 +100,7 @@ static fg_status read_axes(const fg_place *place, const cJSON *scanner, const ch
   if (!item) return FG_OK;
   if (cJSON_IsArray(item)) {
     int count;
-    return fg_member_numbers(place, name, item, low, high, 2, 2, out, &count);
+    return fg_member_numbers(place, name, item, (fg_array_limits){low, high, 2, 2}, out, &count);
   }
   FG_TRY(fg_member_number(place, name, item, low, high, &out[0]));
   out[1] = out[0];

@@ -40,7 +40,7 @@ const char *fg_correction_reason_words(fg_correction_reason reason) {
   return "";
 }
 
-bool fg_choice_is_left(const fg_correction_choice *choice) {
+bool fg_correction_is_left_out(const fg_correction_choice *choice) {
   return choice->reason > FG_CORRECTION_SMALL && !choice->moved;
 }
 
@@ -49,7 +49,7 @@ void fg_choice_words(const char *symbol, const fg_correction_choice *choice, boo
   char size[80] = "";
   double um = 1000 * choice->move_mm, expanded = FG_COVERAGE_FACTOR * 1000 * choice->u_move_mm;
   words[0] = 0;
-  if (!fg_choice_is_left(choice)) return;
+  if (!fg_correction_is_left_out(choice)) return;
   if (isfinite(um) && isfinite(expanded)) {
     int decimals = expanded > 0 ? (int)fmin(6, fmax(0, 1 - floor(log10(expanded)))) : 3;
     fg_text_clip(size, sizeof size, "%s%.*f %s %.*f %s ", "is ", decimals, um, plain ? "+-" : "±",

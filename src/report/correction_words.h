@@ -14,7 +14,7 @@ const char *fg_correction_reason_words(fg_correction_reason reason);
 
 /* True when a correction that is not small was estimated, but the dimension was left as
  * measured. */
-bool fg_choice_is_left(const fg_correction_choice *choice);
+bool fg_correction_is_left_out(const fg_correction_choice *choice);
 
 /* "R left as measured: the correction is 1.2 ± 1.9 µm and would add more error than it removes";
  * with `plain` in ASCII. Empty for a corrected dimension. */

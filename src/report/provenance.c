@@ -17,17 +17,17 @@
 #include "report/design/json.h"
 #include "report/measure/scan_model_words.h"
 
-void fg_provenance_take_date(fg_provenance *p, const char *date) {
+void fg_provenance_include_date(fg_provenance *p, const char *date) {
   if (!date[0]) return;
   if (!p->first[0] || strcmp(date, p->first) < 0)
     fg_text_clip(p->first, sizeof p->first, "%s", date);
   if (!p->last[0] || strcmp(date, p->last) > 0) fg_text_clip(p->last, sizeof p->last, "%s", date);
 }
 
-void fg_provenance_take_file(fg_provenance *p, const char *path) {
+void fg_provenance_include_file(fg_provenance *p, const char *path) {
   char date[FG_DATE_DAY];
   fg_date_of_file(path, date);
-  fg_provenance_take_date(p, date);
+  fg_provenance_include_date(p, date);
 }
 
 /* Writes the SHA-256 of the design without its calibration, which has a row of its own. */

@@ -25,9 +25,9 @@ typedef struct fg_provenance {
 } fg_provenance;
 
 /* Widens first and last by a day, "2026-11-20", with or without its time; "" is ignored. */
-void fg_provenance_take_date(fg_provenance *provenance, const char *date);
+void fg_provenance_include_date(fg_provenance *provenance, const char *date);
 /* Widens first and last by the file's modification time. */
-void fg_provenance_take_file(fg_provenance *provenance, const char *path);
+void fg_provenance_include_file(fg_provenance *provenance, const char *path);
 
 /* Writes rows of a list of facts (<dl class="facts">): date, program, design, model,
  * calibration. */

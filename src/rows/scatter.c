@@ -360,7 +360,8 @@ static fg_status remove_shared(search *s, double *weighted) {
       left_out[i] = a->out;
     a->out = false;
   }
-  fg_status status = fg_edge_fit_take_shared(s->ctx, s->edge_fit, left_out, weighted, &numbers);
+  fg_status status =
+      fg_edge_fit_remove_shared_shape(s->ctx, s->edge_fit, left_out, weighted, &numbers);
   s->shared = fmax(0, (double)numbers - polynomials_of_bumps(s));
   free(left_out);
   return status;

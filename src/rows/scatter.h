@@ -25,8 +25,8 @@ fg_status fg_edge_fit_find_scatter(fg_context *ctx, fg_edge_fit *edge_fit,
 /* Removes from weighted residuals the shape that the bumps share along their arcs, with `numbers`
  * parameters: an effect of the part that is not found yet is no noise. `left_out`: rows of arcs
  * with a deviation of their own, which would spread to the other arcs. */
-fg_status fg_edge_fit_take_shared(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                  const bool *left_out, double *weighted, size_t *numbers);
+fg_status fg_edge_fit_remove_shared_shape(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                          const bool *left_out, double *weighted, size_t *numbers);
 
 enum { FG_WHITENING_QUARTERS = 4 };
 

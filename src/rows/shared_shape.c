@@ -39,8 +39,8 @@ static size_t fill_polynomials(const fg_edge_fit *edge_fit, const bool *left_out
   return bumps;
 }
 
-fg_status fg_edge_fit_take_shared(fg_context *ctx, const fg_edge_fit *edge_fit,
-                                  const bool *left_out, double *weighted, size_t *numbers) {
+fg_status fg_edge_fit_remove_shared_shape(fg_context *ctx, const fg_edge_fit *edge_fit,
+                                          const bool *left_out, double *weighted, size_t *numbers) {
   size_t n = edge_fit->row_count;
   double *basis = NULL;
   *numbers = 0;

@@ -14,7 +14,7 @@
 #define CONSUMED_BYTES ((uint64_t)1 << 30)
 /* Limit of a stored pipe: the largest accepted scan, of four channels. */
 #define STORE_BYTES ((uint64_t)32 << 30)
-enum { BUFFER_BYTES = FG_LEDGER_BLOCK_BYTES };
+enum { BUFFER_BYTES = FG_CHECKSUM_BLOCK_BYTES };
 
 static fg_status examine_file(fg_context *ctx, fg_source *source) {
   struct stat entry;
@@ -59,7 +59,7 @@ void fg_source_close(fg_source *source) {
   char unused[65];
   if (source->name) fg_sha256_stream_finish(&source->sum, unused);
   if (source->owned && source->descriptor >= 0) close(source->descriptor);
-  fg_ledger_close(&source->ledger);
+  fg_block_checksums_close(&source->checksums);
   free(source->buffer);
   free(source->name);
   *source = (fg_source){.descriptor = -1};
@@ -180,17 +180,17 @@ fg_status fg_source_store(fg_context *ctx, fg_source *source) {
 fg_status fg_source_jump(fg_context *ctx, fg_source *source) {
   source->jumps = true;
   source->window = (fg_source_window){.buffer = source->buffer};
-  if (source->stored || source->unsummed || source->ledger.mark) return FG_OK;
-  return fg_ledger_open(ctx, source->size, &source->ledger);
+  if (source->stored || source->unsummed || source->checksums.checksum) return FG_OK;
+  return fg_block_checksums_open(ctx, source->size, &source->checksums);
 }
 
 /* Reads one block of the file, or the file's part of it. */
 static ssize_t read_block(const fg_source *source, uint64_t block, uint8_t *out) {
   size_t done = 0;
-  while (done < FG_LEDGER_BLOCK_BYTES) {
-    uint64_t offset = block * FG_LEDGER_BLOCK_BYTES + done;
+  while (done < FG_CHECKSUM_BLOCK_BYTES) {
+    uint64_t offset = block * FG_CHECKSUM_BLOCK_BYTES + done;
     uint64_t left = offset < source->size ? source->size - offset : 0;
-    size_t wanted = FG_LEDGER_BLOCK_BYTES - done;
+    size_t wanted = FG_CHECKSUM_BLOCK_BYTES - done;
     if (left < wanted) wanted = (size_t)left;
     if (wanted == 0) break;
     ssize_t got = pread(source->descriptor, out + done, wanted, source->start + (off_t)offset);
@@ -208,13 +208,13 @@ static bool hold_block(fg_source *source, fg_source_window *window, uint64_t blo
   window->block = block;
   window->length = got < 0 ? 0 : (size_t)got;
   if (got < 0) window->error = errno;
-  if (got >= 0) fg_ledger_note(&source->ledger, block, window->buffer, window->length);
+  if (got >= 0) fg_block_checksums_add(&source->checksums, block, window->buffer, window->length);
   return got >= 0;
 }
 
 fg_status fg_source_window_open(fg_context *ctx, fg_source_window *window) {
   *window = (fg_source_window){.buffer = NULL};
-  return fg_memory_allocate(ctx, FG_LEDGER_BLOCK_BYTES, 1, (void **)&window->buffer);
+  return fg_memory_allocate(ctx, FG_CHECKSUM_BLOCK_BYTES, 1, (void **)&window->buffer);
 }
 
 void fg_source_window_close(fg_source_window *window) {
@@ -226,8 +226,8 @@ ssize_t fg_source_read_window(fg_source *source, fg_source_window *window, void 
                               uint64_t offset) {
   size_t done = 0;
   while (done < wanted) {
-    if (!hold_block(source, window, (offset + done) / FG_LEDGER_BLOCK_BYTES)) return -1;
-    size_t from = (size_t)((offset + done) % FG_LEDGER_BLOCK_BYTES);
+    if (!hold_block(source, window, (offset + done) / FG_CHECKSUM_BLOCK_BYTES)) return -1;
+    size_t from = (size_t)((offset + done) % FG_CHECKSUM_BLOCK_BYTES);
     size_t taken = from < window->length ? window->length - from : 0;
     if (taken == 0) break;
     if (taken > wanted - done) taken = wanted - done;
@@ -276,10 +276,10 @@ static fg_status sum_blocks(fg_context *ctx, fg_source *source, char hex[65]) {
   struct sha256_ctx sum;
   void *block;
   ssize_t got = 0;
-  FG_TRY(fg_memory_allocate(ctx, FG_LEDGER_BLOCK_BYTES, 1, &block));
+  FG_TRY(fg_memory_allocate(ctx, FG_CHECKSUM_BLOCK_BYTES, 1, &block));
   sha256_init(&sum);
   for (uint64_t i = 0; (got = read_block(source, i, block)) > 0; i++) {
-    fg_ledger_note(&source->ledger, i, block, (size_t)got);
+    fg_block_checksums_add(&source->checksums, i, block, (size_t)got);
     sha256_update(&sum, (size_t)got, block);
   }
   int error = errno;
@@ -292,7 +292,7 @@ static fg_status sum_blocks(fg_context *ctx, fg_source *source, char hex[65]) {
 }
 
 fg_status fg_source_check_unchanged(fg_context *ctx, fg_source *source) {
-  if (!source->ledger.mark || !atomic_load(&source->ledger.changed)) return FG_OK;
+  if (!source->checksums.checksum || !atomic_load(&source->checksums.changed)) return FG_OK;
   return fg_fail(ctx, FG_ERR_IO, "%s: changed while it was read; measure it again", source->name);
 }
 

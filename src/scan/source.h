@@ -2,8 +2,8 @@
 /* The bytes of a scan: a file or a pipe, read once from front to back through one buffer, and
  * summed on the way.
  *
- * A format that reads at random (fg_source_read_at) is summed in a reading of its own, and a ledger
- * detects when the two saw different bytes. */
+ * A format that reads at random (fg_source_read_at) is summed in a reading of its own, and
+ * checksums detects when the two saw different bytes. */
 #ifndef FG_SCAN_SOURCE_H
 #define FG_SCAN_SOURCE_H
 
@@ -14,11 +14,11 @@
 
 #include "core/sha256_stream.h"
 #include "foilgauge/status.h"
-#include "scan/ledger.h"
+#include "scan/block_checksums.h"
 
 /* A block of a file that is read at random, for one reader of it. */
 typedef struct fg_source_window {
-  uint8_t *buffer; /* FG_LEDGER_BLOCK_BYTES */
+  uint8_t *buffer; /* FG_CHECKSUM_BLOCK_BYTES */
   uint64_t block;
   size_t length; /* number of bytes that the file has of it; 0: none is held */
   int error;     /* errno of a failed read */
@@ -41,7 +41,7 @@ typedef struct fg_source {
   size_t begin, end;    /* filled part of the buffer that is not yet handed out */
   fg_sha256_stream sum; /* over all bytes received */
   char sha256[65];      /* "": not known yet */
-  fg_ledger ledger;
+  fg_block_checksums checksums;
   fg_source_window window; /* for reading at random */
 } fg_source;
 

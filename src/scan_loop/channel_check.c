@@ -274,7 +274,7 @@ static bool add_field(const fg_effect_found *effect, fg_field_list *to) {
   return true;
 }
 
-static bool take_effect(const fg_effect_found *effect, carriage *c) {
+static bool accept_effect(const fg_effect_found *effect, carriage *c) {
   if (!add_field(effect, &c->fields)) return false;
   double a = fabs(fg_effect_found_amplitude(effect));
   if (a > c->amplitude_um) {
@@ -293,7 +293,7 @@ static carriage start_carriage(const fg_scan_loop *loop) {
 static carriage carriage_of(const fg_scan_loop *loop, const fg_effect_set *set) {
   carriage c = start_carriage(loop);
   for (size_t e = 0; e < set->count; e++)
-    take_effect(&set->effects[e], &c);
+    accept_effect(&set->effects[e], &c);
   return c;
 }
 
@@ -374,7 +374,7 @@ void fg_scan_loop_check_channels(const fg_scan_loop *loop, fg_scan_result *resul
   if (!any_speaks(loop)) return;
   for (size_t i = 0; i < loop->set.count && i < result->claims; i++) {
     carriage c = start_carriage(loop);
-    if (result->claim[i].free || !take_effect(&loop->set.effects[i], &c)) continue;
+    if (result->claim[i].free || !accept_effect(&loop->set.effects[i], &c)) continue;
     for (size_t k = 0; k < loop->set.count; k++)
       if (k != i) add_field(&loop->set.effects[k], &c.others);
     double better;

@@ -123,8 +123,9 @@ static bool any_moves_edges(const fg_scan_loop *loop, const fg_joint_fit_result 
   return fit->fields.count > 0;
 }
 
-fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
-                                  const fg_joint_fit_result *fit, const fg_measurement *corrected) {
+fg_status fg_scan_loop_record_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
+                                    const fg_joint_fit_result *fit,
+                                    const fg_measurement *corrected) {
   double scale = misfit_of(&loop->explanations, explanation);
   if (explanation && fg_scan_loop_is_unlikely(&loop->explanations, explanation)) return FG_OK;
   if (!any_moves_edges(loop, fit)) return FG_OK;

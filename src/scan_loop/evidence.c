@@ -106,8 +106,8 @@ static void add_explanation(const fg_edge_fit *edge_fit, const fg_evidence_model
 
 /* A named effect beside a rival is not found, unless it is certain: without it the rivals are an
  * explanation, too. */
-static void put_verdict(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v,
-                        fg_explanations *to) {
+static void list_explanations(const fg_edge_fit *edge_fit, const fg_evidence_verdict *v,
+                              fg_explanations *to) {
   to->count = to->total = 0;
   to->right = v->outcome != FG_EVIDENCE_UNATTRIBUTED;
   if (v->outcome == FG_EVIDENCE_CLEAN) {
@@ -148,15 +148,15 @@ static bool has_converged(const fg_scan_loop *loop) {
 
 /* Returns true for a named effect whose numbers are 0 within U: linear columns asked for it, the
  * fit does not. */
-static bool is_nothing(const fg_effect_found *effect) {
+static bool is_zero_within_u(const fg_effect_found *effect) {
   const double sigmas = 2;
   return effect->columns > 0 && !fg_effect_is_free(effect->kind) &&
          !fg_effect_found_exceeds(effect, sigmas);
 }
 
-static void leave_out_nothings(const fg_effect_set *set, fg_explanations *explanations) {
+static void unlist_zero_effects(const fg_effect_set *set, fg_explanations *explanations) {
   for (size_t e = 0; e < set->count; e++)
-    for (size_t c = 0; is_nothing(&set->effects[e]) && c < explanations->candidate_count; c++)
+    for (size_t c = 0; is_zero_within_u(&set->effects[e]) && c < explanations->candidate_count; c++)
       if (explanations->candidates[c].kind == set->effects[e].kind)
         explanations->each[0].mask &= ~(1u << c);
 }
@@ -168,17 +168,17 @@ static fg_status fit_set(fg_context *ctx, fg_scan_loop *loop, fg_effect_set *set
   return fg_joint_fit(ctx, &loop->edge_fit, set, loop->residual_after);
 }
 
-/* Leaves such effects out of the only explanation, unless nothing else is in it. */
-static fg_status drop_nothings(fg_context *ctx, fg_scan_loop *loop) {
+/* Leaves effects that are 0 within U out of the only explanation, unless nothing else is in it. */
+static fg_status drop_zero_effects(fg_context *ctx, fg_scan_loop *loop) {
   const fg_effect_set all = loop->set;
   fg_effect_set some = {.count = 0};
   for (size_t e = 0; e < all.count; e++)
-    if (!is_nothing(&all.effects[e])) some.effects[some.count++] = all.effects[e];
+    if (!is_zero_within_u(&all.effects[e])) some.effects[some.count++] = all.effects[e];
   if (loop->explanations.count > 1 || !some.count || some.count == all.count) return FG_OK;
   fg_status status = fit_set(ctx, loop, &some);
   if (status == FG_ERR_NUMERIC) return fit_set(ctx, loop, &loop->set);
   loop->set = some;
-  leave_out_nothings(&all, &loop->explanations);
+  unlist_zero_effects(&all, &loop->explanations);
   return status;
 }
 
@@ -193,7 +193,8 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   /* Beside known radii more is left; no effect at all leaves the same, but for its last digits. */
   bool comparable = set->count && !fg_effect_set_scales(set);
   if (status == FG_OK && comparable && !has_converged(loop)) status = FG_ERR_NUMERIC;
-  if (status == FG_OK && set->count == 1 && is_nothing(&set->effects[0])) status = FG_ERR_NUMERIC;
+  if (status == FG_OK && set->count == 1 && is_zero_within_u(&set->effects[0]))
+    status = FG_ERR_NUMERIC;
   if (status == FG_ERR_NUMERIC) {
     fg_edge_fit_geometry_load(&loop->edge_fit, geometry);
     fg_status before = fit_set(ctx, loop, &loop->set);
@@ -203,14 +204,14 @@ static fg_status fit_explanation(fg_context *ctx, fg_scan_loop *loop, fg_effect_
   return status;
 }
 
-/* Takes what the evidence says, with the likeliest explanation fitted. FG_ERR_NUMERIC as above: the
+/* Adopts the verdict, with its likeliest explanation fitted. FG_ERR_NUMERIC as above: the
  * explanations so far stay. */
-static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evidence_verdict *v,
-                              bool *moved) {
+static fg_status adopt_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evidence_verdict *v,
+                               bool *moved) {
   fg_explanations next = loop->explanations;
   fg_effect_set set;
-  put_verdict(&loop->edge_fit, v, &next);
-  fg_search_take(&next, 0, &set);
+  list_explanations(&loop->edge_fit, v, &next);
+  fg_explanations_get_set(&next, 0, &set);
   *moved = false;
   if (same_kinds(&set, &loop->set)) {
     loop->explanations = next;
@@ -220,16 +221,17 @@ static fg_status take_verdict(fg_context *ctx, fg_scan_loop *loop, const fg_evid
   *moved = true;
   loop->set = set;
   loop->explanations = next;
-  return drop_nothings(ctx, loop);
+  return drop_zero_effects(ctx, loop);
 }
 
-/* A set of named effects that cannot be fitted is told as the likeliest one without a name. */
-static fg_status take_what_fits(fg_context *ctx, fg_scan_loop *loop,
-                                const fg_evidence_search *search, fg_evidence_verdict *v,
-                                bool *moved) {
-  fg_status status = take_verdict(ctx, loop, v, moved);
-  if (status == FG_ERR_NUMERIC && fg_evidence_take_nameless(search, v))
-    status = take_verdict(ctx, loop, v, moved);
+/* In place of named effects that cannot be fitted, the likeliest explanation without a name is
+ * adopted. */
+static fg_status adopt_fitting_verdict(fg_context *ctx, fg_scan_loop *loop,
+                                       const fg_evidence_search *search, fg_evidence_verdict *v,
+                                       bool *moved) {
+  fg_status status = adopt_verdict(ctx, loop, v, moved);
+  if (status == FG_ERR_NUMERIC && fg_evidence_choose_unnamed(search, v))
+    status = adopt_verdict(ctx, loop, v, moved);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
@@ -246,19 +248,18 @@ static fg_status open_parts(fg_context *ctx, const fg_edge_fit *edge_fit,
 /* A plate whose cause has no name corrects other scans by a map: its curve alone would not hold
  * what the picture does beside it. */
 static fg_status find_map(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
-                          const fg_evidence_verdict *v) {
+                          const fg_evidence_verdict *v, const fg_evidence_window *window) {
   fg_field_map_free(&loop->map);
   if (!loop->edge_fit.discs || v->outcome != FG_EVIDENCE_UNATTRIBUTED) return FG_OK;
-  return fg_evidence_find_map(ctx, search, &loop->displacement, &loop->map);
+  return fg_evidence_find_map(ctx, search, window, &loop->displacement, &loop->map);
 }
 
 static fg_status find_displacement(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *search,
-                                   const fg_evidence_verdict *v) {
-  const fg_evidence_model *found = v->outcome == FG_EVIDENCE_FOUND ? &v->tie[0] : NULL;
+                                   const fg_evidence_window *window) {
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->displacement_parts));
   FG_TRY(open_parts(ctx, &loop->edge_fit, &loop->unseen_parts));
   if (!loop->edge_fit.discs) FG_TRY(fg_evidence_find_unseen(ctx, search, loop->unseen_parts));
-  return fg_evidence_find_displacement(ctx, search, found, &loop->displacement,
+  return fg_evidence_find_displacement(ctx, search, window, &loop->displacement,
                                        loop->displacement_parts);
 }
 
@@ -277,7 +278,7 @@ static void add_spread(const fg_displacement_part *from, size_t bumps, fg_joint_
         to->bumps[b][i][k] += from->bumps[b][i][k];
 }
 
-void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_result *fit) {
+void fg_scan_loop_set_uncertainties(const fg_scan_loop *loop, fg_joint_fit_result *fit) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
   for (size_t p = 0; p < edge_fit->part_count; p++) {
     size_t bumps = edge_fit->parts[p].bump_count;
@@ -353,7 +354,7 @@ static bool leaves_more(const fg_scan_loop *loop, const fg_evidence_verdict *v) 
 /* All that explain as well by the search before. */
 static void seed_by_search(const fg_scan_loop *loop, seed_list *seeds) {
   for (seeds->count = 1; seeds->count <= loop->explanations.count; seeds->count++)
-    fg_search_take(&loop->explanations, seeds->count - 1, &seeds->set[seeds->count]);
+    fg_explanations_get_set(&loop->explanations, seeds->count - 1, &seeds->set[seeds->count]);
 }
 
 /* The likeliest sets of named effects at one linearisation, for the next. */
@@ -380,7 +381,7 @@ static fg_status move_to_names(fg_context *ctx, fg_scan_loop *loop, fg_evidence_
   *moved = false;
   FG_TRY(fg_evidence_decide(ctx, search, true, &verdict));
   if (verdict.outcome != FG_EVIDENCE_FOUND && verdict.outcome != FG_EVIDENCE_TIED) return FG_OK;
-  fg_status status = take_verdict(ctx, loop, &verdict, moved);
+  fg_status status = adopt_verdict(ctx, loop, &verdict, moved);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
 
@@ -388,6 +389,7 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
                             seed_list *seeds, bool first, bool *moved) {
   fg_evidence_search search = {.count = 0};
   fg_evidence_verdict verdict;
+  fg_evidence_window window;
   fg_status status = FG_OK;
   seeds->set[0] = loop->set;
   fg_edge_fit_hold_radii(&loop->edge_fit, true);
@@ -404,10 +406,12 @@ static fg_status weigh_once(fg_context *ctx, fg_scan_loop *loop, double *residua
   loop->edge_error_um = search.problem.error_um;
   loop->margin = verdict.margin;
   loop->beside_foil_field = fg_scan_loop_is_beside_foil_field(&loop->edge_fit, &verdict);
-  FG_TRY_EXIT(find_displacement(ctx, loop, &search, &verdict));
+  FG_TRY_EXIT(fg_evidence_list_window(
+      ctx, &search, verdict.outcome == FG_EVIDENCE_FOUND ? &verdict.tie[0] : NULL, &window));
+  FG_TRY_EXIT(find_displacement(ctx, loop, &search, &window));
   FG_TRY_EXIT(fg_scan_loop_find_form_errors(ctx, loop, &search, &verdict));
-  FG_TRY_EXIT(take_what_fits(ctx, loop, &search, &verdict, moved));
-  FG_TRY_EXIT(find_map(ctx, loop, &search, &verdict));
+  FG_TRY_EXIT(adopt_fitting_verdict(ctx, loop, &search, &verdict, moved));
+  FG_TRY_EXIT(find_map(ctx, loop, &search, &verdict, &window));
   *moved = *moved && search.problem.large;
 exit:
   fg_evidence_search_close(&search);

@@ -26,7 +26,7 @@ const char *fg_scan_loop_fold_of(const fg_scan_loop *loop) {
   return loop->cross_fit.folds ? words[loop->cross_fit.unit] : NULL;
 }
 
-fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop) {
+fg_status fg_scan_loop_note_held_out(fg_context *ctx, fg_scan_loop *loop) {
   const fg_cross_fit *c = &loop->cross_fit;
   if (!c->folds || c->gain > c->u_gain) return FG_OK;
   return fg_scan_loop_bumps_note(

@@ -82,7 +82,7 @@ static fg_status note_scatter(fg_context *ctx, fg_scan_loop *loop, const deviati
       of->count, of->scatter * of->u_um, of->u_um);
 }
 
-fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
+fg_status fg_scan_loop_note_known_sizes(fg_context *ctx, fg_scan_loop *loop) {
   if (!loop->by_evidence || !loop->edge_fit.known_count || fg_effect_set_scales(&loop->set))
     return FG_OK;
   const deviations of = compare_with_known(loop, loop->after, -1);

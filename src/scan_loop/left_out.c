@@ -100,7 +100,7 @@ exit:
   return status;
 }
 
-fg_status fg_scan_loop_say_left_out(fg_context *ctx, fg_scan_loop *loop) {
+fg_status fg_scan_loop_note_left_out(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->scan_count; i++)
     for (size_t f = 0; f < loop->before[i].foil_count; f++) {
       const fg_foil *foil = &loop->before[i].foils[f];

@@ -112,7 +112,7 @@ static fg_status fit_explanation(fg_context *ctx, void *shared, size_t item) {
   fg_edge_fit rows;
   fg_effect_set set;
   if (item == 0) return FG_OK;
-  fg_search_take(&tie->loop->explanations, item, &set);
+  fg_explanations_get_set(&tie->loop->explanations, item, &set);
   FG_TRY(fg_edge_fit_subset(ctx, &tie->loop->edge_fit, NULL, &rows));
   fg_status status = fg_joint_fit_open(ctx, &rows, &set, fit);
   if (status == FG_OK) fit->edge_fit = &tie->loop->edge_fit;
@@ -131,7 +131,7 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
   fg_status status = fg_scan_loop_correct_all(ctx, loop, fit, tried);
   if (status == FG_OK) widen_all(loop, tried);
   if (status == FG_OK && !loop->by_evidence) /* its mean is over all of them */
-    status = fg_scan_loop_take_moves(ctx, loop, explanation, fit, tried);
+    status = fg_scan_loop_record_moves(ctx, loop, explanation, fit, tried);
   for (size_t i = 0; i < loop->scan_count; i++)
     fg_measurement_free(&tried[i]);
   if (status != FG_ERR_NUMERIC) return status;

@@ -82,7 +82,10 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->edge_fit.row_count; i++)
     rows += !loop->edge_fit.views[loop->edge_fit.rows[i].view].held_out;
   if (rows < ROWS_MIN)
-    return fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects", rows);
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%zu edge rows are too few to look for effects; scan more bumps, or at a higher resolution",
+        rows);
   return FG_OK;
 }
 
@@ -191,8 +194,8 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
   FG_TRY(loop->edge_fit.discs ? note_forming(ctx, loop) : note_reach(ctx, loop));
-  FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
-  FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
+  FG_TRY(fg_scan_loop_note_held_out(ctx, loop));
+  FG_TRY(fg_scan_loop_note_left_out(ctx, loop));
   FG_TRY(say_without(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
   FG_TRY(say_picture(ctx, loop));
@@ -204,12 +207,12 @@ static fg_status correct_by_winner(fg_context *ctx, fg_scan_loop *loop) {
   fg_joint_fit_result fit;
   FG_TRY(fg_joint_fit_open(ctx, &loop->edge_fit, &loop->set, &fit));
   loop->set = fit.set;
-  if (loop->by_evidence) fg_scan_loop_take_displacement(loop, &fit);
+  if (loop->by_evidence) fg_scan_loop_set_uncertainties(loop, &fit);
   bool by_mean = loop->by_evidence && loop->scanner_is_suspect;
   fg_status status = by_mean ? fg_scan_loop_correct_by_evidence(ctx, loop, &fit, loop->after)
                              : fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
   if (status == FG_OK && fit.set.count && (by_mean || !loop->by_evidence))
-    status = fg_scan_loop_take_moves(ctx, loop, 0, &fit, loop->after);
+    status = fg_scan_loop_record_moves(ctx, loop, 0, &fit, loop->after);
   fg_joint_fit_close(&fit);
   return status;
 }
@@ -253,7 +256,7 @@ static fg_status search_effects(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_put_form_errors(ctx, loop));
   FG_TRY(fg_scan_loop_find_width(ctx, loop));
   loop->tone = fg_scan_loop_find_tone(loop, true);
-  FG_TRY(fg_scan_loop_say_known_sizes(ctx, loop));
+  FG_TRY(fg_scan_loop_note_known_sizes(ctx, loop));
   widen_scales(loop);
   loop->verdict = fg_scan_loop_outcome(loop);
   return fg_scan_loop_decide(ctx, loop);

@@ -398,7 +398,7 @@ static void put_limit_words(fg_scanner_change *change) {
   fg_text_clip(change->sentence + used, sizeof change->sentence - used, " %s", limit);
 }
 
-static void say_change(fg_scanner_change *change) {
+static void write_change_sentence(fg_scanner_change *change) {
   static const char *const verdicts[] = {
       [FG_SCANNER_SAME] = "No change of the scanner shows",
       [FG_SCANNER_SUSPECTED] = "The scanner may have changed",
@@ -430,7 +430,7 @@ static fg_status finish_change(fg_context *ctx, change_work *work) {
                     : change->p_value < SUSPECTED_P ? FG_SCANNER_SUSPECTED
                                                     : FG_SCANNER_SAME;
   change->limit = judge_limit(change);
-  say_change(change);
+  write_change_sentence(change);
   return FG_OK;
 }
 

@@ -94,7 +94,7 @@ static void flag_reach(const fg_field_frame *frame, fg_measurement *m) {
 }
 
 /* The larger in size. */
-static void take_larger(double *max, double move) {
+static void raise_max(double *max, double move) {
   if (isfinite(move) && !(fabs(move) <= fabs(*max))) *max = move;
 }
 
@@ -118,10 +118,10 @@ static void sum_up_foil(const fg_foil *before, const fg_foil *corrected, fg_foil
   if (before->bump_count != foil->bump_count) return;
   for (size_t b = 0; b < foil->bump_count; b++) {
     const fg_bump *from = &before->bumps[b], *bare = &own->bumps[b], *to = &foil->bumps[b];
-    take_larger(&c->radius_mm, to->radius_mm - from->radius_mm);
-    take_larger(&c->height_mm, to->height_mm - from->height_mm);
-    take_larger(&c->u_radius_mm, added(to->u_radius_mm, bare->u_radius_mm));
-    take_larger(&c->u_height_mm, added(to->u_height_mm, bare->u_height_mm));
+    raise_max(&c->radius_mm, to->radius_mm - from->radius_mm);
+    raise_max(&c->height_mm, to->height_mm - from->height_mm);
+    raise_max(&c->u_radius_mm, added(to->u_radius_mm, bare->u_radius_mm));
+    raise_max(&c->u_height_mm, added(to->u_height_mm, bare->u_height_mm));
   }
 }
 

@@ -56,7 +56,7 @@ fg_status fg_scanner_model_write(fg_context *ctx, const fg_scanner_model *model,
 fg_status fg_scanner_model_check_picture(fg_context *ctx, const fg_measurement *m);
 
 /* Takes the temperature that a design states of the part. */
-void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_scanner_model *model);
+void fg_scanner_model_set_temperature(const fg_calibration *calibration, fg_scanner_model *model);
 
 /* Makes a model of a loop's scanner effects; free with fg_scanner_model_free. */
 fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model);

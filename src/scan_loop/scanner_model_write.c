@@ -41,7 +41,7 @@ static void add_uncertain_scale(double u_scale, fg_field_list *fields) {
   fields->fields[fields->count++] = field;
 }
 
-void fg_scanner_model_take_temperature(const fg_calibration *calibration, fg_scanner_model *model) {
+void fg_scanner_model_set_temperature(const fg_calibration *calibration, fg_scanner_model *model) {
   bool known = calibration->stated && calibration->has_temperature;
   model->temperature_c = known ? calibration->temperature_c : NAN;
   model->u_temperature_k = known ? calibration->u_temperature_k : NAN;
@@ -138,7 +138,7 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
   made->artefact = first->design.artefact;
-  fg_scanner_model_take_temperature(&first->design.calibration, made);
+  fg_scanner_model_set_temperature(&first->design.calibration, made);
   made->tone = loop->tone;
   if (is_nameless(loop))
     status = take_map(ctx, loop, made);

@@ -75,12 +75,12 @@ fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurement
  * no foil is left. */
 fg_status fg_scan_loop_leave_out(fg_context *ctx, fg_scan_loop *loop);
 /* Adds a note for each foil left out, and for each stretch of the others that no fit holds. */
-fg_status fg_scan_loop_say_left_out(fg_context *ctx, fg_scan_loop *loop);
+fg_status fg_scan_loop_note_left_out(fg_context *ctx, fg_scan_loop *loop);
 
 /* Weighs the search's explanation against all named effects and all rivals by their evidence. */
 fg_status fg_scan_loop_weigh_evidence(fg_context *ctx, fg_scan_loop *loop);
 /* Gives a fit the uncertainties of the mean over all models. */
-void fg_scan_loop_take_displacement(const fg_scan_loop *loop, fg_joint_fit_result *fit);
+void fg_scan_loop_set_uncertainties(const fg_scan_loop *loop, fg_joint_fit_result *fit);
 
 /* Finds deviations of single bumps where the search found none, and adds them to the set. */
 fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop);
@@ -91,7 +91,7 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
 
 /* Computes held-out errors of the set in force; adds a note when they did not fall. */
 fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop);
-fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop);
+fg_status fg_scan_loop_note_held_out(fg_context *ctx, fg_scan_loop *loop);
 /* "bumps"; NULL: no cross-fit. */
 const char *fg_scan_loop_fold_of(const fg_scan_loop *loop);
 
@@ -123,7 +123,7 @@ static inline double fg_scan_loop_u_diameter_mm(const fg_measurement *measuremen
 
 /* Tells what known diameters leave open where no scale was found, and from which size on one would
  * have shown. Needs the tone. */
-fg_status fg_scan_loop_say_known_sizes(fg_context *ctx, fg_scan_loop *loop);
+fg_status fg_scan_loop_note_known_sizes(fg_context *ctx, fg_scan_loop *loop);
 /* Returns true where the corrected radii of a scan's discs lie clearly farther from the known ones
  * than those before, beside a level and a scale. */
 bool fg_scan_loop_gauges_refuse(const fg_scan_loop *loop, size_t scan);
@@ -159,8 +159,9 @@ double fg_scan_loop_excess_over_best(const fg_explanations *explanations, size_t
 
 /* Records the moves of an explanation, unless it is unlikely: `corrected` are all scans by its fit.
  * Call in their order, the one in force first. */
-fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
-                                  const fg_joint_fit_result *fit, const fg_measurement *corrected);
+fg_status fg_scan_loop_record_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
+                                    const fg_joint_fit_result *fit,
+                                    const fg_measurement *corrected);
 /* Writes the form errors into the foils of `after`; notes where they are ranges or unknown. */
 fg_status fg_scan_loop_put_form_errors(fg_context *ctx, fg_scan_loop *loop);
 

@@ -67,7 +67,8 @@ static fg_status read_users(fg_context *ctx, FILE *file, const char *path, fg_us
                      path, number, FG_TOKEN_MIN, FG_TOKEN_MAX);
   }
   if (users->count) return FG_OK;
-  return fg_fail(ctx, FG_ERR_DATA, "%.600s: names no user", path);
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%.600s: names no user; it needs a line for each: name,role,token", path);
 }
 
 fg_status fg_users_load(fg_context *ctx, const char *path, fg_users *users) {

@@ -9,10 +9,10 @@
 #include "foilgauge/file.h"
 #include "language/language.h"
 #include "station/access.h"
+#include "station/audit_trail.h"
 #include "station/news.h"
 #include "station/outbox/outbox.h"
 #include "station/pages.h"
-#include "station/trail.h"
 #include "station/trend.h"
 
 typedef struct route {
@@ -42,7 +42,7 @@ static const route pages[] = {
     {"/found/bumps.csv", fg_page_found, CSV, false, true},
     {"/found/results.dfq", fg_page_found, "text/plain; charset=utf-8", false, true},
     {"/found/results.qif", fg_page_found, "application/xml", false, true},
-    {"/trail", fg_page_trail, HTML, false, false},
+    {"/trail", fg_page_audit_trail, HTML, false, false},
     {"/outbox", fg_page_outbox, HTML, false, false},
     {"/api/outbox", fg_page_outbox_api, "application/json", false, false},
 };
@@ -115,7 +115,7 @@ static void act(fg_inspection *station, const fg_request *request, fg_action *ac
   *answer = (fg_answer){.code = 303, .type = HTML};
   fg_access_sign(station, &signed_request);
   fg_status status = action(&ctx, station, &signed_request, answer);
-  fg_trail_keep(station, request, status == FG_OK ? "" : ctx.message);
+  fg_audit_trail_add(station, request, status == FG_OK ? "" : ctx.message);
   if (status != FG_OK) fg_access_refuse(answer, code_of(status), ctx.message);
 }
 
@@ -223,7 +223,7 @@ static void write_answer(fg_inspection *station, const fg_request *request, fg_a
       if (fg_access_has_role(station, request, actions[i].role, answer))
         act(station, request, actions[i].act, answer);
       else
-        fg_trail_keep(station, request, "the role does not reach");
+        fg_audit_trail_add(station, request, "the role does not reach");
       return;
     }
   fg_access_refuse(answer, 404, "There is no such page.");

@@ -63,7 +63,8 @@ static fg_status hide_name(fg_context *ctx, const char *path, char **hidden) {
 fg_status fg_backup_write(fg_context *ctx, const char *folder, const char *path) {
   char *database = NULL, *hidden = NULL;
   if (access(path, F_OK) == 0)
-    return fg_fail(ctx, FG_ERR_USAGE, "%.800s: exists: a backup overwrites nothing", path);
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "%.800s: exists, and a backup overwrites nothing: name another file", path);
   FG_TRY(fg_text_print(ctx, &database, "%s/%s", folder, FG_STATION_DATABASE));
   fg_status status = fg_station_database_check(ctx, database);
   if (status == FG_OK) status = hide_name(ctx, path, &hidden);
@@ -90,7 +91,7 @@ static fg_status check_sound(fg_context *ctx, const char *path) {
   fg_status status = fg_query_end(ctx, &query, path);
   fg_sql_close(reader);
   if (status != FG_OK || sound) return status;
-  return fg_fail(ctx, FG_ERR_DATA, "%.800s: the backup is damaged", path);
+  return fg_fail(ctx, FG_ERR_DATA, "%.800s: the backup is damaged: take an older one", path);
 }
 
 /* Event numbers after the backup come again: receivers must not take them for those they have. */

@@ -140,7 +140,7 @@ exit:
 }
 
 /* Makes the mean shift of all foils 0, and takes the shifts out of the values. */
-static void take_out(const fg_cause_data *data, fg_cause *cause, double *value) {
+static void subtract_cause(const fg_cause_data *data, fg_cause *cause, double *value) {
   const fg_cause_column *column = fg_cause_column_find(data, cause->name);
   double mean = 0;
   for (size_t i = 0; i < data->foils; i++)
@@ -190,7 +190,7 @@ static fg_status add_cause(fg_context *ctx, fg_cause_pass *pass, const fg_loop_p
     FG_TRY(find_level_shifts(ctx, problem, claim, cause));
   else
     FG_TRY(find_curve_shifts(ctx, problem, claim, cause));
-  take_out(pass->data, cause, pass->value);
+  subtract_cause(pass->data, cause, pass->value);
   fg_cause_describe(pass->data, problem, claim, pass->group == pass->data->lot, cause);
   return FG_OK;
 }

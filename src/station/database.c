@@ -221,7 +221,9 @@ static fg_status migrate(fg_context *ctx, fg_station_database *database) {
 static fg_status find_file(fg_context *ctx, fg_station_database *database) {
   struct stat file;
   if (stat(database->path, &file) != 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: is gone again", database->path);
+    return fg_fail(ctx, FG_ERR_IO,
+                   "%s: was removed while it was opened: does another program tidy the folder?",
+                   database->path);
   database->device = file.st_dev;
   database->inode = file.st_ino;
   return FG_OK;
@@ -247,7 +249,10 @@ fg_status fg_station_database_check(fg_context *ctx, const char *path) {
   fg_query query;
   sqlite3 *reader;
   if (access(path, R_OK) != 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: there is no database of a station", path);
+    return fg_fail(ctx, FG_ERR_IO,
+                   "%s: there is no database of a station: check the folder, or start `foilgauge "
+                   "station` in it",
+                   path);
   FG_TRY(fg_station_database_open_reader(ctx, path, &reader));
   fg_query_begin(reader, "PRAGMA user_version", &query);
   int version = fg_query_row(&query) ? (int)fg_query_get_integer(&query, 0) : 0;

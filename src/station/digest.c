@@ -12,8 +12,8 @@
 #include "foilgauge/version.h"
 #include "page/page.h"
 #include "station/cause_keep.h"
+#include "station/cause_thread.h"
 #include "station/trend.h"
-#include "station/why.h"
 
 enum {
   NEWEST_POINTS = 200,
@@ -194,7 +194,7 @@ static fg_status write_quantity(fg_context *ctx, digest *d, const fg_trend_choic
   write_heading(d, title);
   FG_TRY(write_signals(ctx, d, choice));
   FG_TRY(write_accepted_causes(ctx, d, choice));
-  fg_status status = fg_why_search(&inner, d->request, d->path, choice, &report);
+  fg_status status = fg_cause_search_database(&inner, d->request, d->path, choice, &report);
   if (status == FG_ERR_DATA) {
     write_labelled(d, "Not searched:", inner.message);
     return FG_OK;

@@ -179,21 +179,28 @@ static fg_status make_head(fg_context *ctx, export *at) {
   return fg_lot_sum_settings(ctx, &at->settings, at->head.measured_with);
 }
 
+/* All foils of a scan, of this lot and of others. */
+typedef struct scan_foils {
+  const fg_foil *foils;
+  size_t count;
+  const char *date; /* of the scan */
+} scan_foils;
+
 /* Formats the record of the lot's foils alone. */
-static fg_status format(fg_context *ctx, const export *at, size_t item, const fg_foil *foils,
-                        size_t foil_count, const char *date, char **line, size_t *length) {
+static fg_status format_foils(fg_context *ctx, const export *at, size_t item, const scan_foils *all,
+                              char **line, size_t *length) {
   const fg_lot_scan *scan = &at->content.scans[item];
   fg_measurement own = {0};
   fg_record record = {.scan = (char *)(uintptr_t)fg_manifest_scan(&at->manifest, item)};
   void *block;
   strcpy(record.sha256, scan->sha256);
   strcpy(record.measured_with, at->head.measured_with);
-  strcpy(record.date, date);
+  strcpy(record.date, all->date);
   FG_TRY(fg_memory_allocate(ctx, scan->count, sizeof *own.foils, &block));
   own.foils = block;
-  for (size_t i = 0; i < foil_count; i++)
+  for (size_t i = 0; i < all->count; i++)
     for (size_t k = 0; k < scan->count; k++)
-      if (foils[i].number == scan->numbers[k]) own.foils[own.foil_count++] = foils[i];
+      if (all->foils[i].number == scan->numbers[k]) own.foils[own.foil_count++] = all->foils[i];
   fg_status status = fg_record_format(ctx, &record, &own, line, length);
   free(own.foils);
   return status;
@@ -237,7 +244,9 @@ static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **
   else if (measurement.foil_count != scan->of)
     status = format_lost(ctx, at, item, "other foils are found in it now", line, length);
   else
-    status = format(ctx, at, item, measurement.foils, measurement.foil_count, date, line, length);
+    status =
+        format_foils(ctx, at, item, &(scan_foils){measurement.foils, measurement.foil_count, date},
+                     line, length);
   at->exported->again++;
   fg_measurement_free(&measurement);
   return status;
@@ -267,8 +276,10 @@ static fg_status write_record(fg_context *ctx, void *user, size_t item, char **l
   FG_TRY(read_record(ctx, at, at->content.scans[item].id, &record));
   bool valid = record.scan && !strcmp(record.measured_with, at->head.measured_with);
   fg_status status =
-      valid ? format(ctx, at, item, record.foils, record.foil_count, record.date, line, length)
-            : measure_again(ctx, at, item, line, length);
+      valid
+          ? format_foils(ctx, at, item, &(scan_foils){record.foils, record.foil_count, record.date},
+                         line, length)
+          : measure_again(ctx, at, item, line, length);
   fg_record_free(&record);
   return status;
 }

@@ -2,6 +2,7 @@
 #include "station/orders.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -65,9 +66,10 @@ fg_status fg_order_read_open(fg_context *ctx, sqlite3 *connection, fg_order *ord
 
 /* ---- files of an ERP ---- */
 
-static void cell_text(const fg_column *column, size_t row, char text[FG_NAMED_TEXT]) {
+/* Returns a cell as it is; "" for a missing one. */
+static const char *get_order_cell(const fg_column *column, size_t row) {
   bool missing = !column->word || column->word[row] == FG_TABLE_MISSING;
-  fg_text_clip(text, FG_NAMED_TEXT, "%s", missing ? "" : column->words[column->word[row]]);
+  return missing ? "" : column->words[column->word[row]];
 }
 
 static const fg_column *find_order_column(const fg_table *table, const char *name,
@@ -87,10 +89,9 @@ static const char *without_zeros(const char *number) {
  * differs in leading zeros. table->rows: there is none. */
 static size_t find_order_row(const fg_table *table, const char *number) {
   const fg_column *numbers = find_order_column(table, columns[0].name, columns[0].other);
-  char text[FG_NAMED_TEXT];
   size_t found = table->rows;
   for (size_t row = table->rows; numbers && row-- > 0;) {
-    cell_text(numbers, row, text);
+    const char *text = get_order_cell(numbers, row);
     if (!strcmp(text, number)) return row;
     if (found == table->rows && text[0] && !strcmp(without_zeros(text), without_zeros(number)))
       found = row;
@@ -98,15 +99,22 @@ static size_t find_order_row(const fg_table *table, const char *number) {
   return found;
 }
 
-static void read_order_cells(const fg_table *table, size_t row, fg_order *order) {
+/* Text that is too long is refused, not cut: a shorter one could be the name of another lot. */
+static fg_status read_order_cells(fg_context *ctx, const char *path, const fg_table *table,
+                                  size_t row, fg_order *order) {
   const fg_column *pieces = find_order_column(table, "pieces", "quantity");
-  char text[FG_NAMED_TEXT];
   *order = (fg_order){0};
   for (size_t i = 0; i < COLUMNS; i++) {
     const fg_column *column = find_order_column(table, columns[i].name, columns[i].other);
-    if (column) cell_text(column, row, (char *)order + columns[i].offset);
+    const char *text = column ? get_order_cell(column, row) : "";
+    if (strlen(text) >= FG_NAMED_TEXT)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: row %zu, column '%s': a text of %zu bytes; at most %d can be kept", path,
+                     row + 1, column->name, strlen(text), FG_NAMED_TEXT - 1);
+    strcpy((char *)order + columns[i].offset, text);
   }
-  if (pieces) cell_text(pieces, row, text), order->pieces = strtoll(text, NULL, 10);
+  if (pieces) order->pieces = strtoll(get_order_cell(pieces, row), NULL, 10);
+  return FG_OK;
 }
 
 static fg_status find_in_order_file(fg_context *ctx, const char *path, const char *number,
@@ -115,9 +123,9 @@ static fg_status find_in_order_file(fg_context *ctx, const char *path, const cha
   char sum[65];
   FG_TRY(fg_table_load_words(ctx, path, &table, sum));
   size_t row = find_order_row(&table, number);
-  if (row < table.rows) read_order_cells(&table, row, order);
+  fg_status status = row < table.rows ? read_order_cells(ctx, path, &table, row, order) : FG_OK;
   fg_table_free(&table);
-  return FG_OK;
+  return status;
 }
 
 /* True for the file of two that an ERP wrote last. */
@@ -133,7 +141,9 @@ static fg_status find_in_folder(fg_context *ctx, const char *path, const char *n
   DIR *folder = opendir(path);
   fg_status status = FG_OK;
   struct stat newest = {0}, about;
-  if (!folder) return fg_fail(ctx, FG_ERR_IO, "%s: the folder of orders cannot be read", path);
+  if (!folder)
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder of orders cannot be read: %s", path,
+                   strerror(errno));
   for (struct dirent *entry; status == FG_OK && (entry = readdir(folder));) {
     size_t length = strlen(entry->d_name);
     char *file = NULL;

@@ -6,8 +6,8 @@
 #include "page/page.h"
 #include "page/tile.h"
 #include "station/cause_keep.h"
+#include "station/cause_thread.h"
 #include "station/trend.h"
-#include "station/why.h"
 
 #define P_SHOWN 1e-12
 
@@ -15,18 +15,18 @@ typedef struct why_page {
   fg_inspection *station;
   sqlite3 *reader;
   const fg_trend_choice *choice;
-  const fg_why *why;
+  const fg_cause_thread *search;
   FILE *out;
 } why_page;
 
-static bool is_of_choice(const fg_why *why, const fg_trend_choice *choice) {
-  return why->choice.row == choice->row && why->choice.owner == choice->owner &&
-         why->choice.bump == choice->bump && !strcmp(why->choice.lot, choice->lot) &&
-         !strcmp(why->choice.die, choice->die);
+static bool is_of_choice(const fg_cause_thread *search, const fg_trend_choice *choice) {
+  return search->choice.row == choice->row && search->choice.owner == choice->owner &&
+         search->choice.bump == choice->bump && !strcmp(search->choice.lot, choice->lot) &&
+         !strcmp(search->choice.die, choice->die);
 }
 
 static void write_acceptance(const why_page *p, size_t k) {
-  const fg_cause *cause = &p->why->report.cause[k];
+  const fg_cause *cause = &p->search->report.cause[k];
   fputs("<form class=\"fields\" method=\"post\" action=\"/accept\">", p->out);
   fg_page_csrf_token(p->station, p->out);
   fg_trend_write_hidden(p->out, p->choice);
@@ -42,7 +42,7 @@ static void write_acceptance(const why_page *p, size_t k) {
 }
 
 static void write_found(const why_page *p) {
-  const fg_cause_report *report = &p->why->report;
+  const fg_cause_report *report = &p->search->report;
   if (!report->causes) {
     fputs("<p class=\"next\">No column explains the values beyond chance.</p>\n", p->out);
     return;
@@ -71,7 +71,7 @@ static void write_error_tile(FILE *out, const char *title, double value, const f
 }
 
 static void write_errors(const why_page *p) {
-  const fg_cause_report *report = &p->why->report;
+  const fg_cause_report *report = &p->search->report;
   const fg_quantity *row = p->choice->row;
   fputs("<dl class=\"tiles\">", p->out);
   write_error_tile(p->out, "Scatter of foils before", report->before, row, "standard deviation");
@@ -94,7 +94,7 @@ static void write_line(FILE *out, const char *label, const char *words) {
 static fg_status write_chart_of(fg_context *ctx, const why_page *p, bool taken_out) {
   fg_trend trend;
   fg_trend_choice choice = *p->choice;
-  const fg_cause_report *report = &p->why->report;
+  const fg_cause_report *report = &p->search->report;
   choice.newest = 0;
   choice.taken_out = taken_out;
   choice.found = taken_out ? report->cause : NULL;
@@ -113,12 +113,12 @@ static fg_status write_chart_of(fg_context *ctx, const why_page *p, bool taken_o
 }
 
 static fg_status write_result(fg_context *ctx, const why_page *p) {
-  const fg_cause_report *report = &p->why->report;
+  const fg_cause_report *report = &p->search->report;
   fprintf(p->out,
           "<p class=\"note\">%zu foils of %zu day%s and %zu lot%s; searched in %.1f s, until ",
           report->foils, report->days, report->days == 1 ? "" : "s", report->lots,
           report->lots == 1 ? "" : "s", report->seconds);
-  fg_page_time_zoned(p->out, p->why->at);
+  fg_page_time_zoned(p->out, p->search->at);
   fputs(".</p>\n", p->out);
   write_found(p);
   write_errors(p);
@@ -143,23 +143,23 @@ static fg_status write_why(fg_context *ctx, const why_page *p) {
   fputs("</h1>\n<p><a href=\"", p->out);
   fg_trend_write_query(p->out, "/trends", p->choice);
   fputs("\">« Trends</a></p>\n", p->out);
-  bool ours = is_of_choice(p->why, p->choice);
-  if (p->why->running && ours) {
+  bool ours = is_of_choice(p->search, p->choice);
+  if (p->search->running && ours) {
     fputs("<p class=\"next\" data-live role=\"status\">Searching for causes. The answer comes by "
           "itself.</p>\n",
           p->out);
     return FG_OK;
   }
-  if (ours && p->why->error[0])
-    write_line(p->out, "No answer:", p->why->error);
-  else if (ours && p->why->at)
+  if (ours && p->search->error[0])
+    write_line(p->out, "No answer:", p->search->error);
+  else if (ours && p->search->at)
     FG_TRY(write_result(ctx, p));
-  if (!ours || !p->why->at)
+  if (!ours || !p->search->at)
     fputs(
         "<p class=\"note\">Searches die, coil, oven, operator, scanner, program and time for what "
         "moved this quantity.</p>\n",
         p->out);
-  write_ask(p, ours && p->why->at ? "Search again" : "Why?");
+  write_ask(p, ours && p->search->at ? "Search again" : "Why?");
   return FG_OK;
 }
 
@@ -169,9 +169,10 @@ fg_status fg_page_why(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   FG_TRY(fg_trend_choose(ctx, station, request, &choice));
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_TRENDS, "Why?"));
   fputs("<section>\n", out);
-  pthread_mutex_lock(&station->why->mutex);
-  fg_status status = write_why(ctx, &(why_page){station, reader, &choice, station->why, out});
-  pthread_mutex_unlock(&station->why->mutex);
+  pthread_mutex_lock(&station->cause_thread->mutex);
+  fg_status status =
+      write_why(ctx, &(why_page){station, reader, &choice, station->cause_thread, out});
+  pthread_mutex_unlock(&station->cause_thread->mutex);
   fputs("</section>\n", out);
   fg_page_end(out);
   return status;

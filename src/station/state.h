@@ -79,10 +79,11 @@ struct fg_inspection {
   char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
-  struct fg_backup *backup;      /* station/backup.h; NULL: the recipe asks for none */
-  fg_users users;                /* station/access.h */
-  struct fg_outbox *outbox;      /* station/outbox/outbox.h; NULL: nothing is passed on */
-  struct fg_why *why;            /* search for causes (station/why.h); NULL: none was asked for */
+  struct fg_backup *backup; /* station/backup.h; NULL: the recipe asks for none */
+  fg_users users;           /* station/access.h */
+  struct fg_outbox *outbox; /* station/outbox/outbox.h; NULL: nothing is passed on */
+  struct fg_cause_thread
+      *cause_thread; /* search for causes (station/cause_thread.h); NULL: none was asked for */
   fg_languages *languages;       /* of the pages; NULL: English alone */
   struct fg_part_recipes *parts; /* station/part_recipes.h; NULL: one recipe for all */
   fg_recovery recovery;

@@ -12,6 +12,7 @@
 #include "station/access.h"
 #include "station/answer.h"
 #include "station/backup.h"
+#include "station/cause_thread.h"
 #include "station/close.h"
 #include "station/digest.h"
 #include "station/export.h"
@@ -21,7 +22,6 @@
 #include "station/scan_options.h"
 #include "station/server.h"
 #include "station/watch.h"
-#include "station/why.h"
 
 static fg_status load_model(fg_context *ctx, fg_inspection *station) {
   const char *path = station->settings->lot.model;
@@ -84,7 +84,7 @@ static fg_status run_tasks(fg_context *ctx, fg_inspection *station) {
   }
   FG_TRY(make_csrf_token(ctx, station));
   FG_TRY(fg_languages_open(ctx, &station->languages));
-  FG_TRY(fg_why_begin(ctx, station));
+  FG_TRY(fg_cause_thread_start(ctx, station));
   inspect_scan_command(station);
   FG_TRY(fg_outbox_begin(ctx, station));
   FG_TRY(fg_backup_begin(ctx, station));
@@ -178,7 +178,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   atomic_init(&station->news, fg_station_now());
   fg_status status = run_tasks(ctx, station);
   fg_closing_end(&station->closing);
-  fg_why_end(station);
+  fg_cause_thread_stop(station);
   fg_outbox_end(station);
   fg_backup_end(station);
   fg_station_database_close(&station->database);

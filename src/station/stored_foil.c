@@ -143,7 +143,7 @@ fg_status fg_stored_foil_write_provenance(fg_context *ctx, const fg_stored_foil 
   fg_provenance from = {.version = stored->program, .of_scans = stored->readable};
   if (stored->readable) from.design = &stored->settings.design;
   fg_date_of_time(stored->at / MS_PER_S, from.first);
-  fg_provenance_take_date(&from, from.first);
+  fg_provenance_include_date(&from, from.first);
   if (stored->model)
     FG_TRY(fg_scanner_model_parse(ctx, "the scanner's model of then", stored->model, &model));
   from.model = model;

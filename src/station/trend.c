@@ -135,10 +135,10 @@ static void find_trend_spread(fg_lot_quantity *quantity) {
 static fg_status chart_lots(unsigned rules, fg_trend *trend) {
   fg_context unused;
   fg_lot_quantity *quantity = &trend->quantity;
+  const fg_subgroups by_lot = {quantity->value, quantity->size, trend->count};
   quantity->has_chart =
-      trend->count >= 2 &&
-      fg_chart_subgroups(&unused, quantity->value, quantity->size, trend->count, FG_SIGMA_FROM_SD,
-                         rules, &quantity->means, NULL) == FG_OK;
+      trend->count >= 2 && fg_chart_subgroups(&unused, &by_lot, FG_SIGMA_FROM_SD, rules,
+                                              &quantity->means, NULL) == FG_OK;
   quantity->stable = quantity->has_chart && !quantity->means.signals;
   return FG_OK;
 }

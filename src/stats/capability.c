@@ -81,42 +81,48 @@ static double sum_from(const double *values, size_t count, double origin) {
   return sum;
 }
 
-static fg_status split_values(fg_context *ctx, const double *values, size_t count,
-                              fg_value_groups groups, double *means, double *deviations,
-                              fg_normality *of_means, fg_normality *of_deviations) {
-  size_t known = 0, at = 0, single = 0;
+/* Values of groups, parted into the groups' means and the deviations from them. */
+typedef struct parted_values {
+  double *mean, *deviation; /* owned */
+  size_t means, deviations;
+} parted_values;
+
+/* Parts `count` values; groups of one have no deviation. */
+static void part_values(const double *values, size_t count, fg_value_groups groups,
+                        parted_values *parted) {
+  size_t at = 0, single = 0;
   for (size_t i = 0; i < groups.count; at += groups.size[i++]) {
     size_t n = groups.size[i];
     if (!n) continue;
     double mean = values[at] + sum_from(values + at, n, values[at]) / (double)n;
-    means[known++] = mean;
+    parted->mean[parted->means++] = mean;
     single += n == 1;
     /* Of n values, deviations are smaller by the share that the mean has taken. */
     for (size_t k = at; n > 1 && k < at + n; k++)
-      deviations[k - single] = (values[k] - mean) * sqrt((double)n / (double)(n - 1));
+      parted->deviation[k - single] = (values[k] - mean) * sqrt((double)n / (double)(n - 1));
   }
-  FG_TRY(fg_normality_test(ctx, means, known, of_means));
-  return fg_normality_test(ctx, deviations, count - single, of_deviations);
+  parted->deviations = count - single;
 }
 
 fg_status fg_normality_test_groups(fg_context *ctx, const double *values, size_t count,
                                    fg_value_groups groups, fg_normality *normality) {
-  double *means = NULL, *deviations = NULL;
+  parted_values parted = {.mean = NULL};
   fg_normality of_means, of_deviations;
   fg_status status = FG_OK;
   if (!has_groups(groups)) return fg_normality_test(ctx, values, count, normality);
-  FG_TRY_EXIT(fg_memory_allocate(ctx, groups.count, sizeof *means, (void **)&means));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *deviations, (void **)&deviations));
-  FG_TRY_EXIT(
-      split_values(ctx, values, count, groups, means, deviations, &of_means, &of_deviations));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, groups.count, sizeof *parted.mean, (void **)&parted.mean));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *parted.deviation, (void **)&parted.deviation));
+  part_values(values, count, groups, &parted);
+  FG_TRY_EXIT(fg_normality_test(ctx, parted.mean, parted.means, &of_means));
+  FG_TRY_EXIT(fg_normality_test(ctx, parted.deviation, parted.deviations, &of_deviations));
   bool both = isfinite(of_means.p_value) && isfinite(of_deviations.p_value);
   *normality = of_means.p_value < of_deviations.p_value || !isfinite(of_deviations.p_value)
                    ? of_means
                    : of_deviations;
   if (both) normality->p_value = fmin(1, 2 * normality->p_value);
 exit:
-  free(means);
-  free(deviations);
+  free(parted.mean);
+  free(parted.deviation);
   return status;
 }
 

@@ -55,7 +55,7 @@ static void compare_variances(moments a, moments b, double confidence, fg_compar
 }
 
 /* Distances from the sample's median. */
-static void take_distances(fg_sample sample, double *distance) {
+static void list_distances(fg_sample sample, double *distance) {
   memcpy(distance, sample.values, sample.count * sizeof *distance);
   double median = fg_median(distance, sample.count);
   for (size_t i = 0; i < sample.count; i++)
@@ -67,8 +67,8 @@ static fg_status compare_spreads(fg_context *ctx, fg_sample a, fg_sample b, fg_c
   void *block;
   FG_TRY(fg_memory_allocate(ctx, a.count + b.count, sizeof(double), &block));
   double *distance = block;
-  take_distances(a, distance);
-  take_distances(b, distance + a.count);
+  list_distances(a, distance);
+  list_distances(b, distance + a.count);
   moments first = moments_of((fg_sample){distance, a.count});
   moments second = moments_of((fg_sample){distance + a.count, b.count});
   free(distance);

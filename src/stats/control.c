@@ -182,14 +182,15 @@ static subgroup describe_subgroup(const double *values, size_t count) {
   return group;
 }
 
-typedef struct subgroups {
+/* Subgroups with the parameters of their charts. */
+typedef struct chart_basis {
   const double *values;
   const size_t *size;
   size_t count;
   double sigma, grand_mean;
-} subgroups;
+} chart_basis;
 
-static fg_status find_sigma(fg_context *ctx, fg_sigma_from from, subgroups *all) {
+static fg_status find_sigma(fg_context *ctx, fg_sigma_from from, chart_basis *all) {
   size_t used = 0, total = 0, at = 0;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {
     subgroup group = describe_subgroup(all->values + at, all->size[i]);
@@ -207,7 +208,7 @@ static fg_status find_sigma(fg_context *ctx, fg_sigma_from from, subgroups *all)
   return FG_OK;
 }
 
-static void plot_means(const subgroups *all, unsigned rules, fg_chart *chart) {
+static void plot_means(const chart_basis *all, unsigned rules, fg_chart *chart) {
   size_t at = 0, plotted = 0;
   chart->centre = all->grand_mean;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {
@@ -223,7 +224,7 @@ static void plot_means(const subgroups *all, unsigned rules, fg_chart *chart) {
 
 /* s has the mean c4 sigma and the variance (1 - c4²) sigma². The centre line is that of the
  * largest subgroup. */
-static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *chart) {
+static void plot_deviations(const chart_basis *all, unsigned rules, fg_chart *chart) {
   size_t at = 0, plotted = 0, largest = 0;
   for (size_t i = 0; i < all->count; at += all->size[i++]) {
     if (!all->size[i]) continue;
@@ -243,20 +244,20 @@ static void plot_deviations(const subgroups *all, unsigned rules, fg_chart *char
   }
 }
 
-fg_status fg_chart_subgroups(fg_context *ctx, const double *values, const size_t *size,
-                             size_t count, fg_sigma_from from, unsigned rules, fg_chart *means,
-                             fg_chart *deviations) {
-  subgroups all = {.values = values, .size = size, .count = count};
+fg_status fg_chart_subgroups(fg_context *ctx, const fg_subgroups *subgroups, fg_sigma_from from,
+                             unsigned rules, fg_chart *means, fg_chart *deviations) {
+  chart_basis all = {
+      .values = subgroups->values, .size = subgroups->size, .count = subgroups->count};
   if (means) *means = (fg_chart){0};
   if (deviations) *deviations = (fg_chart){0};
   FG_TRY(find_sigma(ctx, from, &all));
   if (means) {
-    FG_TRY(open_chart(ctx, count, means));
+    FG_TRY(open_chart(ctx, all.count, means));
     means->sigma = all.sigma;
     plot_means(&all, rules, means);
   }
   if (deviations) {
-    FG_TRY(open_chart(ctx, count, deviations));
+    FG_TRY(open_chart(ctx, all.count, deviations));
     deviations->sigma = all.sigma;
     plot_deviations(&all, rules, deviations);
   }

@@ -82,7 +82,7 @@ static fg_status check_size(fg_context *ctx, const char *what, const char *name,
 
 static fg_status check_input(fg_context *ctx, const fg_model *model, const fg_extended *response,
                              const double *weights) {
-  if (!model->rows) return fg_fail(ctx, FG_ERR_DATA, "no runs to fit");
+  if (!model->rows) return fg_fail(ctx, FG_ERR_DATA, "no runs to fit: the table has no rows");
   if (!model->columns) return fg_fail(ctx, FG_ERR_USAGE, "the model has no columns");
   for (size_t i = 0; i < model->rows; i++) {
     if (!isfinite(response[i].value))

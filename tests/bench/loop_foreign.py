@@ -8,7 +8,6 @@
 """
 
 import argparse
-import csv
 import json
 import os
 import shutil
@@ -18,6 +17,7 @@ import tempfile
 import numpy as np
 
 import loop_foreign_scans as scans
+from kept_rows import append_row, forget_seeds, read_rows
 from loop_run import run_timed
 
 FACTORS = [1.5, 3.0, 10.0]
@@ -271,13 +271,6 @@ def check_rasteriser(options):
               f"within 2 u {100 * np.mean(np.abs(values) <= 2):.0f} %")  # fmt: skip
 
 
-def read_rows(path):
-    if not os.path.exists(path):
-        return []
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def rows_of(options):
     return [r for r in read_rows(options.csv) if int(r["seed"]) == options.seed]
 
@@ -285,20 +278,11 @@ def rows_of(options):
 def work_on_all(options, work, fields=FIELDS):
     """Inputs that the CSV holds are not run again; --fresh forgets those of this seed."""
     if options.fresh:
-        others = [r for r in read_rows(options.csv) if int(r["seed"]) != options.seed]
-        with open(options.csv, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fields, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(others)
+        forget_seeds(options.csv, [options.seed])
     done = {int(r["case"]) for r in rows_of(options)}
     for index in [i for i in range(options.cases) if i not in done]:
         row = work(index)
-        new = not os.path.exists(options.csv)
-        with open(options.csv, "a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, fields, lineterminator="\n")
-            if new:
-                writer.writeheader()
-            writer.writerow(row)
+        append_row(options.csv, row, fields)
         told = [row.get(name) for name in ("cause", "size_um", "edge", "scans", "outcome", "found")]
         print(index, *told, flush=True)
 

@@ -216,7 +216,7 @@ def main():
     program, seeds = os.path.abspath(options.program), options.seed or SEEDS + [KEPT_ASIDE] * options.all
     for folder in filter(None, (options.out, options.pictures)):
         os.makedirs(folder, exist_ok=True)
-    results = Results(os.path.join(options.out, "loop_plate_rough.csv"), options.fresh, "R_within_floor")
+    results = Results(os.path.join(options.out, "loop_plate_rough.csv"), options.fresh, seeds, "R_within_floor")
     count = COUNT if options.cases is None else min(options.cases, COUNT)
     jobs = [{"tier": n, "seed": s, "index": k} for n in options.tier or TIERS for s in seeds for k in range(count)]
     if not options.report_only:

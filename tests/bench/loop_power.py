@@ -22,6 +22,7 @@ import time
 
 import loop_power_peer as peer
 import loop_power_tables as tables
+from kept_rows import forget_seeds, read_rows, write_rows
 from loop_names import curve_over, member, members
 from loop_power_report import summary
 
@@ -205,15 +206,8 @@ def key(row):
     return tuple(str(row[k]) for k in ("design", "kind", "size", "table", "seed"))
 
 
-def load(path):
-    if not os.path.exists(path):
-        return []
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def work(a, path):
-    done = {key(r) for r in load(path)}
+    done = {key(r) for r in read_rows(path)}
     todo = [j for j in jobs(a) if key(j) not in done]
     print(f"{len(done)} done, {len(todo)} to do", flush=True)
     new = not done
@@ -242,7 +236,7 @@ def options():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--out", default="reports")
-    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--fresh", action="store_true", help="forget the rows of this seed that the CSV has")
     parser.add_argument("--report-only", action="store_true")
     parser.add_argument("--no-peer", action="store_true")
     parser.add_argument("--keep", help="a folder for the tables and their commands")
@@ -254,16 +248,13 @@ def main():
     for folder in filter(None, (a.out, a.keep)):
         os.makedirs(folder, exist_ok=True)
     path = os.path.join(a.out, "loop_power.csv")
-    if a.fresh and os.path.exists(path):
-        os.remove(path)
+    if a.fresh:
+        forget_seeds(path, [a.seed])
     if not a.report_only:
         work(a, path)
-        rows = sorted(load(path), key=lambda r: (r["design"], r["kind"], int(r["size"]), int(r["table"]), int(r["seed"])))
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
-    text = summary(load(path), tables)
+        rows = sorted(read_rows(path), key=lambda r: (r["design"], r["kind"], int(r["size"]), int(r["table"]), int(r["seed"])))
+        write_rows(path, rows, FIELDS)
+    text = summary(read_rows(path), tables)
     with open(os.path.join(a.out, "loop_power.md"), "w", encoding="utf-8") as file:
         file.write(text)
     print(text)

@@ -6,7 +6,7 @@ Usage: loop_rough.py PROGRAM [--cases N] [--tier NAME]... [--seed S]... [--all] 
        [--pictures DIR] [--busy]
 
 Seeds 11 and 12 are for whoever works on the loop; 13 runs only with --all, and nobody looks at it while limits are set.
-Inputs that the CSV holds are not run again (--fresh: all are), so that a run can be broken off and taken up, or be
+Inputs that the CSV holds are not run again (--fresh: those of its seeds are), so that a run can be broken off and taken up, or be
 made tier by tier.
 
 Effects are 1.5 times the size that is seen at 5 standard errors by an oracle that knows the effect's form and the
@@ -194,7 +194,7 @@ def main():
     seeds = options.seed or SEEDS + [KEPT_ASIDE] * options.all
     for folder in filter(None, (options.out, options.pictures)):
         os.makedirs(folder, exist_ok=True)
-    results = Results(os.path.join(options.out, "loop_rough.csv"), options.fresh, "form_within")
+    results = Results(os.path.join(options.out, "loop_rough.csv"), options.fresh, seeds, "form_within")
     jobs = []
     for name in options.tier or TIERS:
         count = TIERS[name].count if options.cases is None else min(options.cases, TIERS[name].count)

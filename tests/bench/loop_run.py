@@ -2,7 +2,6 @@
 """Renders one case, runs `foilgauge loop` on it, and sets the answer against the truth: the measurand, circles through
 the part as it is."""
 
-import csv
 import hashlib
 import json
 import os
@@ -14,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from kept_rows import append_row, forget_seeds, read_rows
 from loop_foil import Midline, measurand_of, profile_error_um
 
 MM_PER_PX = 25.4 / 4800
@@ -278,29 +278,23 @@ def judge(case, report, code, seconds):
 
 
 class Results:
-    """A CSV that grows by a row as each case is done; cases that it holds already are not done again."""
+    """A CSV that grows by a row as each case is done; cases that it holds already are not done again. With `fresh` it
+    forgets those of `seeds`."""
 
-    def __init__(self, path, fresh, column):
-        self.path, self.rows, self.lock = path, [], threading.Lock()
-        if fresh and os.path.exists(path):
-            os.remove(path)
-        if os.path.exists(path):
-            with open(path, newline="", encoding="utf-8") as f:
-                self.rows = list(csv.DictReader(f))
+    def __init__(self, path, fresh, seeds, column):
+        self.path, self.lock = path, threading.Lock()
+        if fresh:
+            forget_seeds(path, seeds)
+        self.rows = read_rows(path)
         if self.rows and column not in self.rows[0]:
-            raise SystemExit(f"{path}: has no column {column}: another benchmark's; --fresh starts anew")
+            raise SystemExit(f"{path}: has no column {column}: another benchmark's; move it away, and run all seeds again")
 
     def has(self, **key):
         return any(all(row[k] == str(v) for k, v in key.items()) for row in self.rows)
 
     def add(self, row):
         with self.lock:
-            new = not os.path.exists(self.path)
-            with open(self.path, "a", newline="", encoding="utf-8") as f:
-                writer = csv.DictWriter(f, fieldnames=list(row), lineterminator="\n")
-                if new:
-                    writer.writeheader()
-                writer.writerow(row)
+            append_row(self.path, row, list(row))
             self.rows.append({k: str(v) for k, v in row.items()})
 
     def run(self, jobs, work, threads):
@@ -323,7 +317,7 @@ def add_options(parser, tiers, out):
     parser.add_argument("--seed", action="append", type=int)
     parser.add_argument("--all", action="store_true", help="the seed that is kept aside too")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--fresh", action="store_true", help="forget the inputs of these seeds that the CSV has")
     parser.add_argument("--report-only", action="store_true")
     parser.add_argument("--pictures", help="a folder that keeps what was rendered, for other programs")
     parser.add_argument("--out", default=out)

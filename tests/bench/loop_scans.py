@@ -81,7 +81,7 @@ def run_scans(program, options):
     for name in options.tier or TIERS:
         count = TIERS[name].count if options.cases is None else min(options.cases, TIERS[name].count)
         jobs += [{"tier": name, "index": k} for k in range(count)]
-    results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh, "form_within")
+    results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh, [seed], "form_within")
     if not options.report_only:
         results.run(jobs, work, options.threads)
     loop_scans_report.write_scans(options.out, results.rows, TIERS, options)
@@ -105,7 +105,7 @@ def run_curve(program, options):
         for kind, layout in CURVE_KINDS
         for size in CURVE_SIZES
     ]
-    results = Results(os.path.join(options.out, "loop_scans_curve.csv"), options.fresh, "size_um")
+    results = Results(os.path.join(options.out, "loop_scans_curve.csv"), options.fresh, [options.seed], "size_um")
     if not options.report_only:
         results.run(jobs, work, options.threads)
     loop_scans_report.write_curve(options.out, results.rows, CURVE_KINDS, CURVE_SIZES)
@@ -120,7 +120,7 @@ def main():
     parser.add_argument("--trials", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--fresh", action="store_true", help="forget the rows of this seed that the CSV has")
     parser.add_argument("--report-only", action="store_true")
     parser.add_argument("--out", default=os.path.join(ROOT, "reports"))
     options = parser.parse_args()

@@ -8,7 +8,7 @@ expect 0 "0.564527 mm" "$program" design
 expect 0 '"height_mm": 0.5645266892' "$program" design --json
 expect 0 "--curve" "$program" design --help
 expect 64 "" "$program" design --no-such-option
-expect 64 "more than one DESIGN" "$program" design a b
+expect 64 "one DESIGN at a time" "$program" design a b
 expect 64 "drop --json" "$program" design --json --curve
 expect 74 "no/such.json" "$program" design no/such.json
 expect 74 "no/such/out.json" "$program" design -o no/such/out.json

@@ -206,6 +206,6 @@ expect 65 'the same scans as lot one, which counts already' next --lot one --lot
 expect 65 'the same scans as lot two' next --prior two/expected.json --lot two
 cp -r one again
 expect 65 'rests on this lot, which cannot test it' "$program" lot one.csv -o again --resume --recipe template/recipe.json --expected next.json
-expect 65 'law.sets: there is none' next --prior empty.json
+expect 65 'law.sets is missing or empty' next --prior empty.json
 expect 65 'sets.*must be an array' next --prior number.json
 exit $failed

@@ -109,7 +109,7 @@ refuse "above 0" --period x_mm=2mm
 refuse "no column of numbers" --period way=2
 refuse "no column of numbers" --period z=2
 refuse "tell no order" --period x_mm=1e9
-refuse "too many --period" "${many[@]}"
+refuse "period: at most" "${many[@]}"
 [ -e never.json ] && fail "a refused period leaves an output file"
 # A bend over the order of the bumps is no cycle that returns after a thousand of them; a turn over nine bumps is one.
 cat >bends.py <<'P'

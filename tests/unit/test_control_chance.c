@@ -36,8 +36,8 @@ static void one_steady_chart_of_a_hundred_is_called_not_steady(void **state) {
       for (int k = 0; k < CHARTS / 4; k++) {
         for (size_t i = 0; i < counts[c] * BUMPS; i++)
           values[i] = random_gaussian(&seed);
-        assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, counts[c], FG_SIGMA_FROM_SD, rules,
-                                           NULL, &deviations));
+        assert_ok(&ctx, fg_chart_subgroups(&ctx, &(fg_subgroups){values, size, counts[c]},
+                                           FG_SIGMA_FROM_SD, rules, NULL, &deviations));
         fg_chart_judge_deviations(&deviations, size, rules, 0.01, &chance);
         uneven += !chance.steady;
         fg_chart_free(&deviations);

@@ -368,14 +368,14 @@ static void a_keystone_of_no_size_has_no_weight(void **state) {
   search(&f, &(fg_evidence_prior){1, 1}, &s);
   for (size_t m = 0; m < s.count; m++) {
     bool bear;
-    assert_ok(&ctx, fg_evidence_leads_bear_names(&ctx, &s, &s.models[m], &bear));
+    assert_ok(&ctx, fg_evidence_has_defining_columns(&ctx, &s, &s.models[m], &bear));
     nothings += !bear;
   }
   assert_true(nothings > 0);
   assert_ok(&ctx, fg_evidence_list_window(&ctx, &s, NULL, &w));
   for (size_t m = 0; m < w.count; m++) {
     bool bear;
-    assert_ok(&ctx, fg_evidence_leads_bear_names(&ctx, &s, w.model[m], &bear));
+    assert_ok(&ctx, fg_evidence_has_defining_columns(&ctx, &s, w.model[m], &bear));
     assert_true(bear);
   }
   fg_evidence_search_close(&s);

@@ -174,8 +174,8 @@ static void limits_follow_the_subgroups(void **state) {
   const double values[] = {1, 2, 3, 2, 4, 1, 3, 2, 2.5};
   const size_t size[] = {3, 2, 0, 4};
   fg_chart means, deviations;
-  assert_ok(&ctx,
-            fg_chart_subgroups(&ctx, values, size, 4, FG_SIGMA_FROM_SD, 1, &means, &deviations));
+  assert_ok(&ctx, fg_chart_subgroups(&ctx, &(fg_subgroups){values, size, 4}, FG_SIGMA_FROM_SD, 1,
+                                     &means, &deviations));
   double sigma = means.sigma;
   assert_near(deviations.sigma, sigma, 0);
   double squares = pow(1 - 2.125, 2) + pow(3 - 2.125, 2) + pow(2 - 2.125, 2) + pow(2.5 - 2.125, 2);
@@ -218,7 +218,8 @@ static void piston_rings(void **state) {
   fg_chart chart;
   for (int i = 0; i < 25; i++)
     size[i] = 5;
-  assert_ok(&ctx, fg_chart_subgroups(&ctx, values, size, 25, FG_SIGMA_FROM_RANGE, 1, &chart, NULL));
+  assert_ok(&ctx, fg_chart_subgroups(&ctx, &(fg_subgroups){values, size, 25}, FG_SIGMA_FROM_RANGE,
+                                     1, &chart, NULL));
   double sigma = chart.sigma;
   assert_near(chart.centre, 74.001176, 5e-7);
   assert_near(sigma, 0.0097853, 5e-7);

@@ -166,8 +166,8 @@ static void a_law_without_scatter_is_turned_round(void **state) {
                                          .log_ratio = springback + slope * step + 0.01 * (double)p};
     }
   }
-  assert_ok(&ctx,
-            fg_springback_find(&ctx, sets, SETS, FG_FORMED_RADIUS, numbers, 2, reference_mm, &fit));
+  const fg_springback_data found_from = {FG_FORMED_RADIUS, sets, SETS, numbers, 2, reference_mm};
+  assert_ok(&ctx, fg_springback_find(&ctx, &found_from, &fit));
   for (size_t p = 0; p < 2; p++) {
     double exact = log(reference_mm) - (springback + 0.01 * (double)p) / (1 + slope);
     assert_near(fg_springback_invert(&fit, p), exact, 1e-4);

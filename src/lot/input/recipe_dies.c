@@ -139,7 +139,7 @@ static fg_status append_die(fg_context *ctx, const char *name, fg_lot_settings *
   if (fg_lot_dies_find(settings, name))
     return fg_fail(ctx, FG_ERR_DATA, "dies: '%s' is there twice", name);
   if (settings->die_count == FG_LOT_DIES_MAX)
-    return fg_fail(ctx, FG_ERR_DATA, "dies: more than %d", FG_LOT_DIES_MAX);
+    return fg_fail(ctx, FG_ERR_DATA, "dies: at most %d", FG_LOT_DIES_MAX);
   *die = &settings->dies[settings->die_count++];
   **die = (fg_lot_die){.name = ""};
   strcpy((*die)->name, name);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "lot/run/journal.h"
@@ -131,8 +132,7 @@ static fg_status read_records(fg_context *ctx, reader *r, const fg_journal_visit
 
 static fg_status open_reader(fg_context *ctx, reader *r, fg_journal_head *head,
                              fg_head_state *state) {
-  r->in = fopen(r->path, "rbe");
-  if (!r->in) return fg_journal_fail(ctx, r->path, "opened");
+  FG_TRY(fg_file_open(ctx, r->path, &r->in));
   FG_TRY(fg_memory_allocate(ctx, BLOCK_BYTES, 1, (void **)&r->block));
   FG_TRY(fg_memory_allocate(ctx, BATCH_LINES, sizeof *r->lines, (void **)&r->lines));
   FG_TRY(read_batch(ctx, r, 1));

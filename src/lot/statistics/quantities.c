@@ -234,10 +234,10 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
   free(means);
   FG_TRY(status);
   fg_context unused;
-  quantity->has_subgroups =
-      fg_owner_is_part(quantity->owner) &&
-      fg_chart_subgroups(&unused, quantity->value, quantity->size, foils, FG_SIGMA_FROM_SD, rules,
-                         &quantity->means, &quantity->deviations) == FG_OK;
+  const fg_subgroups by_foil = {quantity->value, quantity->size, foils};
+  quantity->has_subgroups = fg_owner_is_part(quantity->owner) &&
+                            fg_chart_subgroups(&unused, &by_foil, FG_SIGMA_FROM_SD, rules,
+                                               &quantity->means, &quantity->deviations) == FG_OK;
   quantity->chance = quantity->spread_chance = (fg_chart_chance){.steady = true};
   if (quantity->has_chart)
     fg_chart_judge_individuals(&quantity->chart, rules, chart_level, &quantity->chance);

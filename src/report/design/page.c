@@ -65,7 +65,7 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
             along < 0 ? "−" : "+", fabs(along));
   fputs(".</figcaption></figure>\n</section>\n", out);
   fg_provenance from = {.design = report->design, .calibration = true};
-  if (report->path) fg_provenance_take_file(&from, report->path);
+  if (report->path) fg_provenance_include_file(&from, report->path);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");

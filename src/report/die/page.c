@@ -177,7 +177,7 @@ static fg_status put_traces(fg_context *ctx, FILE *out, const fg_die *die) {
           die->options.max_slope_deg);
   fg_provenance from = {.design = &die->design};
   for (size_t i = 0; i < die->trace_count; i++)
-    fg_provenance_take_file(&from, die->traces[i].path);
+    fg_provenance_include_file(&from, die->traces[i].path);
   fputs("<dl class=\"facts\">\n", out);
   FG_TRY(fg_html_provenance(ctx, out, &from));
   fputs("</dl>\n", out);

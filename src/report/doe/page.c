@@ -225,7 +225,7 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_experiment_repor
   if (isfinite(e->regression.adequate_precision))
     fprintf(out, "<dt>Adequate precision</dt><dd>%.4g</dd>", e->regression.adequate_precision);
   fg_provenance from = {.design = report->design, .of_scans = report->scans > 0};
-  fg_provenance_take_file(&from, report->path);
+  fg_provenance_include_file(&from, report->path);
   FG_TRY(fg_html_provenance(ctx, out, &from));
   fputs("</dl>\n", out);
   return FG_OK;

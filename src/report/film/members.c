@@ -121,7 +121,7 @@ const fg_members fg_film_result_members = FG_MEMBERS_DEFINED(result_rows, "resul
 
 bool fg_film_bearing_at(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_film_report *report = report_of(list);
-  const fg_film_result *row[3] = {&report->at};
+  const fg_film_result *row[3] = {&report->actual};
   size_t rows = 1;
   if (report->has_other_film) row[rows++] = &report->other_film;
   if (fg_film_is_measured(&report->options)) row[rows++] = &report->perfect;
@@ -130,8 +130,8 @@ bool fg_film_bearing_at(const fg_subject *list, size_t i, fg_subject *element) {
 }
 
 bool fg_film_speed_at(const fg_subject *list, size_t i, fg_subject *element) {
-  element->object = &report_of(list)->speed[i];
-  return i < report_of(list)->speeds;
+  element->object = &report_of(list)->by_speed[i];
+  return i < report_of(list)->speed_count;
 }
 
 bool fg_film_draw_at(const fg_subject *list, size_t i, fg_subject *element) {
@@ -232,7 +232,7 @@ static bool has_lift_off(const fg_subject *s) {
 }
 
 static bool has_uncertainty(const fg_subject *s) {
-  return report_of(s)->u.draws > 0;
+  return report_of(s)->uncertainty.draws > 0;
 }
 
 static const fg_member quantile_rows[] = {
@@ -327,7 +327,7 @@ fg_status fg_film_write_orbit(fg_context *ctx, const fg_film_report *report, FIL
 /* ---- the report ---- */
 
 static const char *const top_words[] = {
-    [FG_FILM_STIFF] = "stiff", [FG_FILM_SAGGING] = "sagging", NULL};
+    [FG_FILM_TOP_FOIL_STIFF] = "stiff", [FG_FILM_TOP_FOIL_SAGGING] = "sagging", NULL};
 
 static const fg_member option_rows[] = {
     {FG_NUMBER("load_n", fg_film_report, options.load_n), .words = "force on the rotor"},
@@ -347,7 +347,7 @@ static const fg_member option_rows[] = {
     {FG_COUNT("bumps_per_pad", fg_film_report, options.bumps_per_pad), .words = "from first_bump"},
     {FG_COUNT("first_bump", fg_film_report, options.first_bump), .words = "of each foil"},
     {FG_NUMBER("pitch_deg", fg_film_report, options.pitch_deg), .words = "from bump to bump"},
-    {FG_WORD("top_foil", fg_film_report, options.top, top_words),
+    {FG_WORD("top_foil", fg_film_report, options.top_foil, top_words),
      .words = "between the bumps: stiff, or sagging as a beam on them"},
     {FG_NUMBER("top_foil_mm", fg_film_report, options.top_foil_mm), .words = "its thickness"},
     {FG_COUNT("cells_per_bump", fg_film_report, options.cells_per_bump), .words = "of the mesh"},
@@ -356,7 +356,7 @@ static const fg_member option_rows[] = {
     {FG_NUMBER("touching_um", fg_film_report, options.touching_um),
      .words = "a thinner film touches"},
     {FG_SEED("seed", fg_film_report, options.seed), .words = "of the random shims"},
-    {FG_RANGE("shims_pct", fg_film_report, options.shim_low_pct, options.shim_high_pct),
+    {FG_RANGE("shims_pct", fg_film_report, options.draw.shim_low_pct, options.draw.shim_high_pct),
      .words = "heights of random shims, percent of the clearance"},
 };
 static const fg_members option_members = FG_MEMBERS(option_rows);
@@ -403,7 +403,7 @@ static const fg_member report_rows[] = {
     {FG_GROUP("bore", &bore_members), .present = has_bore, .options = FG_MEMBER_ON_LINE,
      .words = "its measured profile, which shifts the clearance"},
     {FG_GROUP("conditions", &option_members), .words = "as stated, or by default"},
-    {FG_OBJECT("bearing", fg_film_report, at, &fg_film_result_members),
+    {FG_OBJECT("bearing", fg_film_report, actual, &fg_film_result_members),
      .words = "as measured; without foils as designed"},
     {FG_OBJECT("other_film", fg_film_report, other_film, &fg_film_result_members),
      .present = has_other_film,
@@ -428,9 +428,10 @@ static const fg_member report_rows[] = {
      .words = "speed, falling under this load, at which it does"},
     {FG_OBJECT("lift_off_test", fg_film_report, lift_off, &fg_film_lift_off_members),
      .present = has_lift_off, .words = "lift-off speed as measured, against the bearing's"},
-    {FG_ARRAY("coefficients", fg_film_report, frequency, frequencies, &coefficient_members),
+    {FG_ARRAY("coefficients", fg_film_report, coefficients, coefficient_count,
+              &coefficient_members),
      .options = FG_MEMBER_ON_LINE, .words = "stiffness and damping of the film over the whirl"},
-    {FG_LIST("speeds", fg_film_report, speed, speeds, &fg_film_result_members),
+    {FG_LIST("speeds", fg_film_report, by_speed, speed_count, &fg_film_result_members),
      .options = FG_MEMBER_ON_LINE, .words = "the same bearing under the same load"},
     {FG_OBJECT("draws", fg_film_report, draws, &draws_members), .present = has_draws,
      .words = "bearings of the lot's foils, or as designed with random shims"},
@@ -438,7 +439,7 @@ static const fg_member report_rows[] = {
               &fg_film_sensitivity_members),
      .present = has_sensitivities,
      .words = "of the critical mass over the shape of the bumps, about the design"},
-    {FG_OBJECT("uncertainty", fg_film_report, u, &fg_film_uncertainty_members),
+    {FG_OBJECT("uncertainty", fg_film_report, uncertainty, &fg_film_uncertainty_members),
      .present = has_uncertainty, .words = "of the bearing as measured, by that of its clearances"},
     {FG_OBJECT("tolerance", fg_film_report, tolerance, &fg_film_tolerance_members),
      .present = has_tolerance, .words = "on the clearance, that keeps the threshold speed"},
@@ -491,6 +492,6 @@ fg_status fg_film_write_draws(fg_context *ctx, const fg_film_report *report, FIL
 
 fg_status fg_film_write_speeds(fg_context *ctx, const fg_film_report *report, FILE *out) {
   fg_members_csv(out, &fg_film_result_members,
-                 &(fg_subject){.object = report->speed, .whole = report}, fg_film_speed_at);
+                 &(fg_subject){.object = report->by_speed, .whole = report}, fg_film_speed_at);
   return fg_stream_finish(ctx, out, "the speeds");
 }

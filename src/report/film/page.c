@@ -13,7 +13,7 @@
 
 /* The verdict on the rotor. It is open where another film is there, on which it is unstable. */
 static fg_tile rotor_tile(const fg_film_report *r) {
-  const fg_film_result *at = &r->at;
+  const fg_film_result *at = &r->actual;
   double mass_kg = r->options.rotor_mass_kg;
   bool known = !isnan(at->critical_mass_kg), stable = fg_film_is_stable(at, mass_kg);
   bool open = stable && r->has_other_film && !fg_film_is_stable(&r->other_film, mass_kg);
@@ -30,7 +30,7 @@ static fg_tile rotor_tile(const fg_film_report *r) {
 }
 
 static void put_film_tiles(FILE *out, const fg_film_report *r) {
-  const fg_film_result *at = &r->at;
+  const fg_film_result *at = &r->actual;
   bool always = isinf(at->critical_mass_kg);
   const fg_tile tiles[] = {
       rotor_tile(r),
@@ -80,7 +80,7 @@ static void put_field(FILE *out, const fg_film_report *r) {
   fprintf(out,
           "<figcaption>Pressure of the unwrapped film: white is ambient, red above it, blue below; "
           "the highest is %.4g kPa.</figcaption></figure>\n<figure>",
-          r->at.max_pressure_kpa);
+          r->actual.max_pressure_kpa);
   fg_film_plot_thickness(out, r);
   fputs("<figcaption>Film, clearance and the foil's deflection.</figcaption></figure>\n"
         "</section>\n",
@@ -117,7 +117,7 @@ static void put_stability(FILE *out, const fg_film_report *r) {
   fputs("<figcaption>Stiffness and damping of the film over the frequency of whirl, at the stated "
         "speed.</figcaption></figure>\n",
         out);
-  fg_html_table(out, &fg_film_result_members, &(fg_subject){.object = r->speed, .whole = r},
+  fg_html_table(out, &fg_film_result_members, &(fg_subject){.object = r->by_speed, .whole = r},
                 fg_film_speed_at);
   fputs("</section>\n", out);
 }
@@ -165,12 +165,12 @@ fg_status fg_film_write_html(fg_context *ctx, const fg_film_report *r, FILE *out
   fg_html_begin(out, title);
   put_summary(out, r);
   if (r->columns) put_field(out, r);
-  if (r->speeds) put_stability(out, r);
+  if (r->speed_count) put_stability(out, r);
   put_orbit(out, r);
   put_sensitivities(out, r);
   put_draws(out, r);
-  if (r->options.foils && !r->draws.foils) fg_provenance_take_file(&from, r->options.foils);
-  if (r->options.bore) fg_provenance_take_file(&from, r->options.bore);
+  if (r->options.foils && !r->draws.foils) fg_provenance_include_file(&from, r->options.foils);
+  if (r->options.bore) fg_provenance_include_file(&from, r->options.bore);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");

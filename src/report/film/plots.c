@@ -120,15 +120,15 @@ void fg_film_plot_thickness(FILE *out, const fg_film_report *r) {
 static const double far_apart = 0.2;
 
 static bool changes_film(const fg_film_report *r, size_t i) {
-  const double *from = r->speed[i - 1].place_um, *to = r->speed[i].place_um;
+  const double *from = r->by_speed[i - 1].place_um, *to = r->by_speed[i].place_um;
   return hypot(to[0] - from[0], to[1] - from[1]) > far_apart * r->clearance_um;
 }
 
 /* A line for every film that the map passes. */
 static void put_films(fg_plot *at, const fg_film_report *r, const double *x, const double *y) {
   size_t begin = 0;
-  for (size_t i = 1; i <= r->speeds; i++) {
-    if (i < r->speeds && !changes_film(r, i)) continue;
+  for (size_t i = 1; i <= r->speed_count; i++) {
+    if (i < r->speed_count && !changes_film(r, i)) continue;
     fg_plot_line(at, x + begin, y + begin, i - begin, "s1");
     begin = i;
   }
@@ -138,9 +138,9 @@ static void put_films(fg_plot *at, const fg_film_report *r, const double *x, con
 void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
   double x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY};
   double speed[FG_FILM_SPEEDS_MAX], mass[FG_FILM_SPEEDS_MAX];
-  for (size_t i = 0; i < r->speeds; i++) {
-    double critical = r->speed[i].critical_mass_kg;
-    speed[i] = r->speed[i].speed_rpm / 1000;
+  for (size_t i = 0; i < r->speed_count; i++) {
+    double critical = r->by_speed[i].critical_mass_kg;
+    speed[i] = r->by_speed[i].speed_rpm / 1000;
     mass[i] = isfinite(critical) && critical > 0 ? log10(critical) : NAN;
     fg_range_add(x, speed[i], 0);
     fg_range_add(y, mass[i], 0);
@@ -154,10 +154,10 @@ void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
                                                          .x_title = "speed, 1000 rpm"});
   fg_plot_level(&at, log10(r->options.rotor_mass_kg), "limit");
   put_films(&at, r, speed, mass);
-  for (size_t i = 0; i < r->speeds; i++)
+  for (size_t i = 0; i < r->speed_count; i++)
     if (isfinite(mass[i])) fg_plot_dot(&at, speed[i], mass[i], 4, "s1");
-  for (size_t i = 0; i < r->speeds; i++)
-    if (r->speed[i].critical_mass_kg <= 0) fg_plot_dot(&at, speed[i], y[0], 4, "s3");
+  for (size_t i = 0; i < r->speed_count; i++)
+    if (r->by_speed[i].critical_mass_kg <= 0) fg_plot_dot(&at, speed[i], y[0], 4, "s3");
   if (isfinite(r->threshold_rpm))
     fg_plot_dot(&at, r->threshold_rpm / 1000, log10(r->options.rotor_mass_kg), 6, "s2");
   fg_plot_key(&at, 80, "s1", "critical mass: heavier rotors whirl");
@@ -171,8 +171,8 @@ void fg_film_plot_coefficients(FILE *out, const fg_film_report *r, bool damping)
   static const char *const words[] = {"xx", "xy", "yx", "yy"};
   double x[2] = {INFINITY, -INFINITY}, y[2] = {0, 0};
   double ratio[FG_FILM_FREQUENCIES], value[4][FG_FILM_FREQUENCIES];
-  for (size_t i = 0; i < r->frequencies; i++) {
-    const fg_film_coefficients *at = &r->frequency[i];
+  for (size_t i = 0; i < r->coefficient_count; i++) {
+    const fg_film_coefficients *at = &r->coefficients[i];
     ratio[i] = log10(at->whirl_ratio);
     fg_range_add(x, ratio[i], 0);
     for (int k = 0; k < 4; k++) {
@@ -188,7 +188,7 @@ void fg_film_plot_coefficients(FILE *out, const fg_film_report *r, bool damping)
                             .x_title = "log10 of whirl over speed"});
   fg_plot_level(&at, 0, "zero");
   for (size_t k = 0; k < 4; k++) {
-    fg_plot_line(&at, ratio, value[k], r->frequencies, styles[k]);
+    fg_plot_line(&at, ratio, value[k], r->coefficient_count, styles[k]);
     fprintf(out, "<path class=\"%s\" d=\"M%zu 14h26\"/><text x=\"%zu\" y=\"19\">%s</text>\n",
             styles[k], 94 + 200 * k, 128 + 200 * k, words[k]);
   }

@@ -9,10 +9,10 @@
 /* Verdict on a rotor that passes no threshold among the speeds. */
 static const char *find_verdict_of_map(const fg_film_report *r) {
   size_t known = 0, unstable = 0;
-  for (size_t i = 0; i < r->speeds; i++) {
-    if (r->speed[i].outcome == FG_FILM_UNSOLVED) continue;
+  for (size_t i = 0; i < r->speed_count; i++) {
+    if (r->by_speed[i].outcome == FG_FILM_UNSOLVED) continue;
     known++;
-    unstable += !fg_film_is_stable(&r->speed[i], r->options.rotor_mass_kg);
+    unstable += !fg_film_is_stable(&r->by_speed[i], r->options.rotor_mass_kg);
   }
   if (!known) return "has no film";
   if (unstable == known) return "is unstable at all speeds that have a film";
@@ -33,7 +33,7 @@ static void note_threshold(const fg_film_report *r, char *note) {
              o->rotor_mass_kg, r->threshold_rpm);
   else
     snprintf(note, FG_FILM_NOTE, "Between %.0f and %.0f rpm the rotor of %.4g kg %s.",
-             o->speed_low_rpm, o->speed_high_rpm, o->rotor_mass_kg, find_verdict_of_map(r));
+             o->map.low_rpm, o->map.high_rpm, o->rotor_mass_kg, find_verdict_of_map(r));
 }
 
 void fg_film_orbit_words(const fg_film_orbit *orbit, char *text, size_t size) {
@@ -82,7 +82,7 @@ void fg_film_draws_words(const fg_film_report *r, char *text, size_t size) {
   else
     snprintf(text, size,
              "%zu bearings, shims of %g to %g %% of the clearance under every bump, seed %llu",
-             d->count, r->options.shim_low_pct, r->options.shim_high_pct,
+             d->count, r->options.draw.shim_low_pct, r->options.draw.shim_high_pct,
              (unsigned long long)r->options.seed);
   add_missing_draws(d, text, size);
 }
@@ -104,7 +104,7 @@ void fg_film_tolerance_words(const fg_film_report *r, char *text, size_t size) {
     snprintf(text, size,
              "No tolerance on the clearance is told: as designed the rotor has no threshold speed "
              "between %.0f and %.0f rpm.",
-             r->options.speed_low_rpm, r->options.speed_high_rpm);
+             r->options.map.low_rpm, r->options.map.high_rpm);
     return;
   }
   put_tolerance(r, t->each_um, each, sizeof each);
@@ -126,7 +126,7 @@ static void note_other_film(const fg_film_report *r, char *note) {
       "Another film is there at this load and speed: e / C %.3g in place of %.3g, thinnest %.3g um "
       "in place of %.3g; the rotor is %s on it. Which one it takes hangs on where it comes "
       "from.",
-      other->eccentricity, r->at.eccentricity, other->min_film_um, r->at.min_film_um,
+      other->eccentricity, r->actual.eccentricity, other->min_film_um, r->actual.min_film_um,
       word ? word : "not judged");
 }
 
@@ -147,7 +147,7 @@ static void note_film_ends(const fg_film_report *r, char *note) {
 }
 
 static void note_uncertainty(const fg_film_report *r, char *note) {
-  const fg_film_uncertainty *u = &r->u;
+  const fg_film_uncertainty *u = &r->uncertainty;
   snprintf(
       note, FG_FILM_NOTE,
       "The clearances' u makes U (2 u) of the thinnest film %.2g um, of the eccentricity %.2g, "
@@ -174,21 +174,21 @@ static void note_lift_off(const fg_film_report *r, char *note) {
 size_t fg_film_notes(const fg_film_report *r, char notes[FG_FILM_NOTES][FG_FILM_NOTE]) {
   const fg_film_options *o = &r->options;
   size_t count = 0;
-  if (r->at.outcome == FG_FILM_UNSOLVED)
+  if (r->actual.outcome == FG_FILM_UNSOLVED)
     snprintf(notes[count++], FG_FILM_NOTE,
              "No steady film was found under these foils: at %.4g N and %.6g rpm the rotor rests "
              "on them, or the load is carried where the model ends.",
              o->load_n, o->speed_rpm);
   else
     note_threshold(r, notes[count++]);
-  if (r->at.outcome == FG_FILM_TOUCHING)
+  if (r->actual.outcome == FG_FILM_TOUCHING)
     snprintf(notes[count++], FG_FILM_NOTE,
              "The film is thinner than %.3g um: surfaces touch, and what is said of stability "
              "does not hold.",
              o->touching_um);
   if (r->has_other_film) note_other_film(r, notes[count++]);
   if (isfinite(r->film_ends_n) || isfinite(r->film_ends_rpm)) note_film_ends(r, notes[count++]);
-  if (r->u.draws) note_uncertainty(r, notes[count++]);
+  if (r->uncertainty.draws) note_uncertainty(r, notes[count++]);
   if (r->lift_off.asked) note_lift_off(r, notes[count++]);
   if (r->tolerance.asked) fg_film_tolerance_words(r, notes[count++], FG_FILM_NOTE);
   if (o->pads == 0)

@@ -101,7 +101,7 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_design *design,
                             const origin *origins, size_t count) {
   fg_provenance from = {.design = design};
   for (size_t i = 0; i < count; i++)
-    if (origins[i].file->path[0]) fg_provenance_take_file(&from, origins[i].file->path);
+    if (origins[i].file->path[0]) fg_provenance_include_file(&from, origins[i].file->path);
   fputs("<section>\n<h2 class=\"first\">Where it comes from</h2>\n<dl class=\"facts\">\n", out);
   FG_TRY(fg_html_provenance(ctx, out, &from));
   for (size_t i = 0; i < count; i++) {

@@ -256,7 +256,7 @@ static void put_limits(FILE *out, const fg_load_test *test) {
 static fg_status put_provenance(fg_context *ctx, FILE *out, const fg_load_test *test) {
   fg_provenance from = {.of_scans = false};
   for (size_t i = 0; i < test->file_count; i++)
-    fg_provenance_take_file(&from, test->files[i].path);
+    fg_provenance_include_file(&from, test->files[i].path);
   return fg_html_provenance_section(ctx, out, &from);
 }
 

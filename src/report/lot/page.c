@@ -138,8 +138,8 @@ static fg_status put_lot_provenance(fg_context *ctx, FILE *out, const fg_lot_ana
                         .design = &lot->settings.design,
                         .of_scans = true,
                         .model = lot->model};
-  fg_provenance_take_date(&from, analysis->date.first);
-  fg_provenance_take_date(&from, analysis->date.last);
+  fg_provenance_include_date(&from, analysis->date.first);
+  fg_provenance_include_date(&from, analysis->date.last);
   fprintf(out,
           "<section class=\"part\">\n<h1>Where it comes from</h1>\n<dl "
           "class=\"facts\"><dt>Recipe, SHA-256</dt><dd translate=\"no\">%s</dd><dt>Manifest, "

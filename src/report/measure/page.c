@@ -55,7 +55,7 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
   fg_html_name(out, measurement->sha256);
   fputs("</dd>\n", out);
   fg_provenance from = {.design = design, .of_scans = true, .model = measurement->model};
-  fg_provenance_take_date(&from, measurement->date);
+  fg_provenance_include_date(&from, measurement->date);
   FG_TRY(fg_html_provenance(ctx, out, &from));
   fputs("</dl>\n", out);
   return FG_OK;

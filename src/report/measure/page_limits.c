@@ -117,7 +117,7 @@ static void put_beyond(const panel *p, double x, double value) {
 }
 
 /* A part without a value: why, upright in its column. */
-static void put_nothing(const panel *p, int number, const char *why) {
+static void put_missing_value(const panel *p, int number, const char *why) {
   fprintf(p->at.out,
           "<text class=\"x told\" transform=\"translate(%.1f %.1f) rotate(-90)\">%s</text>\n",
           fg_plot_x(&p->at, number) + 5, (p->at.top + p->at.bottom) / 2, why);
@@ -129,7 +129,7 @@ static void put_limit_value(const panel *p, size_t i) {
   double value = fg_quantity_value(p->row, part), u = fg_quantity_uncertainty(p->row, part);
   double x = fg_plot_x(&p->at, number);
   if (!isfinite(value)) {
-    put_nothing(p, number, fg_foil_part_lack(p->parts, i));
+    put_missing_value(p, number, fg_foil_part_lack(p->parts, i));
     return;
   }
   if (value > p->at.y_high || value < p->at.y_low) {
@@ -171,7 +171,7 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
   for (int number = 1; number <= last; number++) {
     fg_plot_x_number(&p.at, number);
     if (!fg_foil_parts_have(&parts, number) && !(foil->flags & FG_FOIL_TOUCHES_BORDER))
-      put_nothing(&p, number, "missing");
+      put_missing_value(&p, number, "missing");
   }
   fg_plot_x_title(&p.at, parts.name);
   for (size_t i = 0; i < parts.count; i++)

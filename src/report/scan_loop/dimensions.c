@@ -150,8 +150,8 @@ static void put_bump_table(FILE *out, const fg_foil *b, const fg_foil *a, size_t
     const fg_bump *after = find_foil_bump(a, b->bumps[i].number);
     if (!after) continue;
     bump_quantities(&b->bumps[i], after, q);
-    q[0].left = fg_choice_is_left(&a->choice[FG_CORRECTED_RADIUS]);
-    q[1].left = fg_choice_is_left(&a->choice[FG_CORRECTED_HEIGHT]);
+    q[0].left = fg_correction_is_left_out(&a->choice[FG_CORRECTED_RADIUS]);
+    q[1].left = fg_correction_is_left_out(&a->choice[FG_CORRECTED_HEIGHT]);
     if (!opened) put_heads(out, q + from, BESIDE, "bump", corrected, tied);
     opened = true;
     fprintf(out, "<tr><td>%d</td>", b->bumps[i].number);
@@ -170,7 +170,7 @@ static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corr
                 {b->overall.radius_mm, b->overall.u_radius_mm},
                 {a->overall.radius_mm, a->overall.u_radius_mm},
                 a->overall.radius_range_mm,
-                fg_choice_is_left(&a->choice[FG_CORRECTED_OVERALL_RADIUS])};
+                fg_correction_is_left_out(&a->choice[FG_CORRECTED_OVERALL_RADIUS])};
   put_heads(out, &q, 1, "circle", corrected, tied);
   fputs("<tr><td>overall</td>", out);
   put_quantity(out, &q, corrected, tied);
@@ -209,7 +209,7 @@ static void put_disc_dimensions(FILE *out, const fg_scan_result *result, size_t 
                       {x->diameter_mm, x->u_diameter_mm},
                       {y->diameter_mm, y->u_diameter_mm},
                       NULL,
-                      fg_choice_is_left(&y->choice)},
+                      fg_correction_is_left_out(&y->choice)},
                      {"roundness",
                       "µm",
                       "µm",

@@ -335,7 +335,7 @@ static void put_error_table(FILE *out, const fg_scan_result *result) {
 static fg_status put_model_origin(fg_context *ctx, FILE *out, const fg_scan_result *result) {
   fg_provenance from = {.design = &result->scan[0].before->design, .of_scans = true};
   for (size_t i = 0; i < result->scans; i++)
-    fg_provenance_take_date(&from, result->scan[i].before->date);
+    fg_provenance_include_date(&from, result->scan[i].before->date);
   return fg_html_provenance_section(ctx, out, &from);
 }
 

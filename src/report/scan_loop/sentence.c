@@ -71,7 +71,7 @@ static void change_words(double before_um, double after_um, char *words, size_t 
                  after);
 }
 
-static fg_status say_errors(fg_context *ctx, const fg_scan_result *result, char **text) {
+static fg_status write_error_sentence(fg_context *ctx, const fg_scan_result *result, char **text) {
   char change[96], floor_words[32];
   change_words(result->before.rms, result->after.rms, change, sizeof change);
   fg_scan_loop_length_words(result->noise_floor_um, floor_words, sizeof floor_words);
@@ -93,8 +93,8 @@ static void count_kept(const fg_correction_choice *choice, kept *k) {
   if (choice[FG_CORRECTED_RADIUS].reason == FG_CORRECTION_NONE) return;
   k->all++;
   for (int d = 0; d < FG_CORRECTED; d++) {
-    k->left[d] += fg_choice_is_left(&choice[d]);
-    k->tied[d] += fg_choice_is_left(&choice[d]) && choice[d].reason == FG_CORRECTION_TIED;
+    k->left[d] += fg_correction_is_left_out(&choice[d]);
+    k->tied[d] += fg_correction_is_left_out(&choice[d]) && choice[d].reason == FG_CORRECTION_TIED;
   }
 }
 
@@ -137,7 +137,7 @@ static fg_status append_kept(fg_context *ctx, const fg_scan_result *result, char
                         kinds > 1 ? "them" : "it");
 }
 
-static fg_status say_chance(fg_context *ctx, double p, char **text) {
+static fg_status write_chance_sentence(fg_context *ctx, double p, char **text) {
   if (p < 1e-12) return fg_text_append(ctx, text, "Noise alone would do this with p < 10⁻¹².");
   return fg_text_append(ctx, text, "Noise alone would do this with p = %.2g.", p);
 }
@@ -170,8 +170,8 @@ static fg_status say_points(fg_context *ctx, const fg_scan_result *result, char 
   FG_TRY(append_claims(ctx, result, true, text));
   if (result->tied) FG_TRY(append_explanations(ctx, result, text));
   FG_TRY(fg_text_append(ctx, text, ". "));
-  FG_TRY(say_chance(ctx, result->p_value, text));
-  FG_TRY(say_errors(ctx, result, text));
+  FG_TRY(write_chance_sentence(ctx, result->p_value, text));
+  FG_TRY(write_error_sentence(ctx, result, text));
   return append_kept(ctx, result, text);
 }
 
@@ -186,7 +186,7 @@ static fg_status append_width(fg_context *ctx, const fg_scan_result *result, cha
     FG_TRY(fg_text_append(ctx, text, " In the strip's width: %s (%s = %s %s)%s. ",
                           claim->says ? claim->says : claim->words, p->symbol, value, p->unit,
                           claim->sure ? "" : ", or the scanner's shift stretches it so"));
-    FG_TRY(say_chance(ctx, claim->p_value, text));
+    FG_TRY(write_chance_sentence(ctx, claim->p_value, text));
   }
   fg_scan_loop_length_words(result->width_before_um, before, sizeof before);
   fg_scan_loop_length_words(result->width_after_um, after, sizeof after);

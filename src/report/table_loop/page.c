@@ -238,7 +238,7 @@ fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE
   put_notes(out, report);
   put_candidates(out, report);
   fg_provenance from = {.of_scans = false};
-  fg_provenance_take_file(&from, report->path);
+  fg_provenance_include_file(&from, report->path);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fputs("</main></body></html>\n", out);
   return fg_stream_finish(ctx, out, "the loop's page");

@@ -357,7 +357,7 @@ static fg_status put_failed(fg_context *ctx, FILE *out, const fg_loop_report *re
   return status;
 }
 
-static fg_status put_nothing(fg_context *ctx, FILE *out, const fg_loop_report *report) {
+static fg_status put_no_effects(fg_context *ctx, FILE *out, const fg_loop_report *report) {
   const fg_loop_problem *problem = &report->problem->problem;
   fg_loop_panel panel = {.at = &problem->coordinate[order_coordinate(problem)],
                          .residual = report->result->before_fit,
@@ -382,7 +382,7 @@ fg_status fg_loop_plots_put(fg_context *ctx, FILE *out, const fg_loop_report *re
   if (result->has_curve)
     FG_TRY_EXIT(put_unattributed(ctx, out, report, left, left + problem->rows));
   if (result->fails) FG_TRY_EXIT(put_failed(ctx, out, report, left, left + problem->rows));
-  if (result->verdict == FG_LOOP_CLEAN) FG_TRY_EXIT(put_nothing(ctx, out, report));
+  if (result->verdict == FG_LOOP_CLEAN) FG_TRY_EXIT(put_no_effects(ctx, out, report));
   if (result->suspects)
     FG_TRY_EXIT(put_claim_plots(ctx, out, report, &result->suspect[0].claim, result->suspect_fit,
                                 left + problem->rows));

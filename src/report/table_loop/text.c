@@ -67,7 +67,7 @@ static fg_status append_claim(fg_context *ctx, const fg_loop_report *report, siz
 }
 
 /* "falls from 3 to 2", "stays at 3": no change that the digits do not show. */
-static fg_status say_change(fg_context *ctx, double before, double after, char **text) {
+static fg_status write_change(fg_context *ctx, double before, double after, char **text) {
   fg_loop_number first = fg_loop_number_text("%.3g", before);
   fg_loop_number second = fg_loop_number_text("%.3g", after);
   if (!strcmp(first.text, second.text)) return fg_text_append(ctx, text, "stays at %s", first.text);
@@ -75,7 +75,8 @@ static fg_status say_change(fg_context *ctx, double before, double after, char *
                         first.text, second.text);
 }
 
-static fg_status say_errors(fg_context *ctx, const fg_loop_result *result, char **text) {
+static fg_status write_errors_before_after(fg_context *ctx, const fg_loop_result *result,
+                                           char **text) {
   bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
   if (!fg_loop_has_after(result))
     return fg_text_append(ctx, text,
@@ -84,10 +85,10 @@ static fg_status say_errors(fg_context *ctx, const fg_loop_result *result, char 
   FG_TRY(fg_text_append(ctx, text,
                         serial ? " With each row predicted from the one before it, the error "
                                : " The error "));
-  FG_TRY(say_change(ctx, result->before.rms, result->after.rms, text));
+  FG_TRY(write_change(ctx, result->before.rms, result->after.rms, text));
   if (isfinite(result->ratio_held_out)) {
     FG_TRY(fg_text_append(ctx, text, "; on rows that took no part in the search it "));
-    FG_TRY(say_change(ctx, result->before.held_out_rms, result->after.held_out_rms, text));
+    FG_TRY(write_change(ctx, result->before.held_out_rms, result->after.held_out_rms, text));
   }
   return fg_text_append(ctx, text, ".");
 }
@@ -183,7 +184,7 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
                           fg_loop_p_text(result->curve.p_value).text));
   if (result->fails) FG_TRY(append_failed(ctx, report, text));
   bool nothing = !result->claims && !result->has_curve;
-  return nothing ? FG_OK : say_errors(ctx, result, text);
+  return nothing ? FG_OK : write_errors_before_after(ctx, result, text);
 }
 
 static void write_errors(const fg_loop_report *report, FILE *out) {

@@ -84,7 +84,9 @@ static void close_mqtt(void *way) {
 static fg_status read_address(fg_context *ctx, const char *to, mqtt *at) {
   const char *host = to + strlen("mqtt://"), *slash = strchr(host, '/');
   const char *user = slash ? memchr(host, '@', (size_t)(slash - host)) : NULL;
-  if (!slash) return fg_fail(ctx, FG_ERR_DATA, "%.300s: has no topic", to);
+  if (!slash)
+    return fg_fail(ctx, FG_ERR_DATA, "%.300s: has no topic; write it as mqtt://HOST:1883/TOPIC",
+                   to);
   if (user) fg_text_clip(at->user, sizeof at->user, "%.*s", (int)(user - host), host);
   if (user) host = user + 1;
   const char *colon = memchr(host, ':', (size_t)(slash - host));

@@ -7,7 +7,10 @@ fg_status fg_transport_find(fg_context *ctx, const char *to, const fg_transport 
   static const fg_transport *const rows[] = {&fg_transport_http, &fg_transport_https,
                                              &fg_transport_mqtt};
   *transport = &fg_transport_folder;
-  if (!to[0]) return fg_fail(ctx, FG_ERR_DATA, "pass_on: `to` is empty");
+  if (!to[0])
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "pass_on: `to` is empty; it must be a folder, or an address with http://, "
+                   "https:// or mqtt://");
   if (!strstr(to, "://")) return FG_OK;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     if (strncmp(to, rows[i]->scheme, strlen(rows[i]->scheme)) != 0) continue;

@@ -7,8 +7,8 @@
 #include "core/text.h"
 #include "page/table.h"
 #include "station/access.h"
+#include "station/audit_trail.h"
 #include "station/pages.h"
-#include "station/trail.h"
 
 enum { ACTIONS_SHOWN = 200, ACTION_TEXT = 300 };
 
@@ -63,7 +63,7 @@ static fg_status insert_action(fg_context *ctx, sqlite3 *writer, const fg_user *
   return fg_query_end(ctx, &query, "keeping an action");
 }
 
-void fg_trail_keep(fg_inspection *station, const fg_request *request, const char *refused) {
+void fg_audit_trail_add(fg_inspection *station, const fg_request *request, const char *refused) {
   fg_context inner;
   const fg_user *user = fg_access_user(station, request);
   fg_station_database *database = &station->database;
@@ -104,8 +104,8 @@ static bool action_at(const fg_subject *list, size_t i, fg_subject *element) {
   return i < trail->count;
 }
 
-fg_status fg_page_trail(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
-                        const fg_request *request, FILE *out) {
+fg_status fg_page_audit_trail(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                              const fg_request *request, FILE *out) {
   trail_list list;
   (void)request;
   FG_TRY(read_actions(ctx, reader, &list));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "station/why.h"
+#include "station/cause_thread.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@
 #include "station/cause_keep.h"
 #include "station/news.h"
 
-enum { GIVEN_WAY = 5 }; /* nice value: a third of the share of a measurement */
+enum { SEARCH_NICENESS = 5 }; /* nice value: a third of the share of a measurement */
 
 static fg_status search_data(fg_context *ctx, const fg_station_request *request, sqlite3 *reader,
                              const fg_trend_choice *choice, fg_cause_report *report) {
@@ -30,8 +30,9 @@ static fg_status search_data(fg_context *ctx, const fg_station_request *request,
   return status;
 }
 
-fg_status fg_why_search(fg_context *ctx, const fg_station_request *request, const char *database,
-                        const fg_trend_choice *choice, fg_cause_report *report) {
+fg_status fg_cause_search_database(fg_context *ctx, const fg_station_request *request,
+                                   const char *database, const fg_trend_choice *choice,
+                                   fg_cause_report *report) {
   sqlite3 *reader;
   FG_TRY(fg_station_database_open_reader(ctx, database, &reader));
   fg_status status = search_data(ctx, request, reader, choice, report);
@@ -41,55 +42,57 @@ fg_status fg_why_search(fg_context *ctx, const fg_station_request *request, cons
 
 /* Lowers the priority of this thread, and of those that it starts. It is not the lowest: on a busy
  * machine the answer would never come. */
-static void give_way(void) {
-  setpriority(PRIO_PROCESS, (id_t)gettid(), GIVEN_WAY);
+static void lower_priority(void) {
+  setpriority(PRIO_PROCESS, (id_t)gettid(), SEARCH_NICENESS);
 }
 
-static void *run_why(void *user) {
+static void *run_search(void *user) {
   fg_inspection *station = user;
-  fg_why *why = station->why;
+  fg_cause_thread *search = station->cause_thread;
   fg_context ctx = {.message = ""};
   fg_cause_report report = {0};
-  give_way();
-  fg_status status =
-      fg_why_search(&ctx, station->request, station->database.path, &why->choice, &report);
-  pthread_mutex_lock(&why->mutex);
-  fg_text_clip(why->error, sizeof why->error, "%s", status == FG_OK ? "" : ctx.message);
-  fg_cause_report_free(&why->report);
-  if (status == FG_OK) why->report = report;
-  why->at = fg_station_now();
-  why->running = false;
-  pthread_mutex_unlock(&why->mutex);
+  lower_priority();
+  fg_status status = fg_cause_search_database(&ctx, station->request, station->database.path,
+                                              &search->choice, &report);
+  pthread_mutex_lock(&search->mutex);
+  fg_text_clip(search->error, sizeof search->error, "%s", status == FG_OK ? "" : ctx.message);
+  fg_cause_report_free(&search->report);
+  if (status == FG_OK) search->report = report;
+  search->at = fg_station_now();
+  search->running = false;
+  pthread_mutex_unlock(&search->mutex);
   fg_station_notify(station);
   return NULL;
 }
 
 /* The caller holds the mutex. */
-static fg_status start_why(fg_context *ctx, fg_inspection *station, const fg_trend_choice *choice) {
-  fg_why *why = station->why;
-  if (why->running)
+static fg_status start_search(fg_context *ctx, fg_inspection *station,
+                              const fg_trend_choice *choice) {
+  fg_cause_thread *search = station->cause_thread;
+  if (search->running)
     return fg_fail(ctx, FG_ERR_DATA, "Another search for causes is running: wait until it ends.");
-  if (why->started) pthread_join(why->thread, NULL);
-  why->choice = *choice;
-  why->running = true;
-  why->started = pthread_create(&why->thread, NULL, run_why, station) == 0;
-  if (why->started) return FG_OK;
-  why->running = false;
+  if (search->started) pthread_join(search->thread, NULL);
+  search->choice = *choice;
+  search->running = true;
+  search->started = pthread_create(&search->thread, NULL, run_search, station) == 0;
+  if (search->started) return FG_OK;
+  search->running = false;
   return fg_fail(ctx, FG_ERR_MEMORY, "There is no thread for it now: try again.");
 }
 
-fg_status fg_why_begin(fg_context *ctx, fg_inspection *station) {
-  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *station->why, (void **)&station->why));
-  pthread_mutex_init(&station->why->mutex, NULL);
+fg_status fg_cause_thread_start(fg_context *ctx, fg_inspection *station) {
+  FG_TRY(
+      fg_memory_allocate(ctx, 1, sizeof *station->cause_thread, (void **)&station->cause_thread));
+  pthread_mutex_init(&station->cause_thread->mutex, NULL);
   return FG_OK;
 }
 
-void fg_why_end(fg_inspection *station) {
-  if (!station->why) return;
-  if (station->why->started) pthread_join(station->why->thread, NULL);
-  fg_cause_report_free(&station->why->report);
-  free(station->why);
-  station->why = NULL;
+void fg_cause_thread_stop(fg_inspection *station) {
+  if (!station->cause_thread) return;
+  if (station->cause_thread->started) pthread_join(station->cause_thread->thread, NULL);
+  fg_cause_report_free(&station->cause_thread->report);
+  free(station->cause_thread);
+  station->cause_thread = NULL;
 }
 
 static void go_to_choice(const char *page, const fg_trend_choice *choice, fg_answer *answer) {
@@ -107,9 +110,9 @@ fg_status fg_action_why(fg_context *ctx, fg_inspection *station, const fg_reques
                         fg_answer *answer) {
   fg_trend_choice choice;
   FG_TRY(fg_trend_choose(ctx, station, request, &choice));
-  pthread_mutex_lock(&station->why->mutex);
-  fg_status status = start_why(ctx, station, &choice);
-  pthread_mutex_unlock(&station->why->mutex);
+  pthread_mutex_lock(&station->cause_thread->mutex);
+  fg_status status = start_search(ctx, station, &choice);
+  pthread_mutex_unlock(&station->cause_thread->mutex);
   go_to_choice("/why", &choice, answer);
   return status;
 }
@@ -120,22 +123,23 @@ static bool is_same_choice(const fg_trend_choice *one, const fg_trend_choice *ot
 }
 
 /* A copy of a found cause, while the mutex is held. */
-static fg_status copy_cause(fg_context *ctx, const fg_why *why, const fg_trend_choice *choice,
-                            const fg_request *request, fg_cause *cause) {
+static fg_status copy_cause(fg_context *ctx, const fg_cause_thread *search,
+                            const fg_trend_choice *choice, const fg_request *request,
+                            fg_cause *cause) {
   char *end;
   const char *number = fg_request_get(request, "cause");
   size_t k = strtoul(number, &end, 10);
-  bool there = *number && !*end && !why->running && is_same_choice(&why->choice, choice) &&
-               k < why->report.causes &&
-               !strcmp(why->report.cause[k].words_of, fg_request_get(request, "words"));
+  bool there = *number && !*end && !search->running && is_same_choice(&search->choice, choice) &&
+               k < search->report.causes &&
+               !strcmp(search->report.cause[k].words_of, fg_request_get(request, "words"));
   if (!there)
     return fg_fail(ctx, FG_ERR_DATA,
                    "The search has been made again since this page was loaded: go back and load it "
                    "again.");
-  *cause = why->report.cause[k];
+  *cause = search->report.cause[k];
   size_t bytes = cause->points * sizeof *cause->point;
   FG_TRY(fg_memory_allocate(ctx, cause->points, sizeof *cause->point, (void **)&cause->point));
-  memcpy(cause->point, why->report.cause[k].point, bytes);
+  memcpy(cause->point, search->report.cause[k].point, bytes);
   return FG_OK;
 }
 
@@ -151,9 +155,9 @@ fg_status fg_action_accept(fg_context *ctx, fg_inspection *station, const fg_req
   const char *by = fg_request_get(request, "by");
   FG_TRY(check_who(ctx, by));
   FG_TRY(fg_trend_choose(ctx, station, request, &choice));
-  pthread_mutex_lock(&station->why->mutex);
-  fg_status status = copy_cause(ctx, station->why, &choice, request, &cause);
-  pthread_mutex_unlock(&station->why->mutex);
+  pthread_mutex_lock(&station->cause_thread->mutex);
+  fg_status status = copy_cause(ctx, station->cause_thread, &choice, request, &cause);
+  pthread_mutex_unlock(&station->cause_thread->mutex);
   FG_TRY(status);
   status =
       fg_cause_keep(ctx, &station->database, &choice, &cause, by, fg_request_get(request, "note"));

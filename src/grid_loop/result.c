@@ -292,7 +292,7 @@ static fg_status tell_scans(fg_context *ctx, fg_grid_loop *loop) {
   return FG_OK;
 }
 
-fg_status fg_grid_loop_tell(fg_context *ctx, fg_grid_loop *loop) {
+fg_status fg_grid_loop_fill_result(fg_context *ctx, fg_grid_loop *loop) {
   const grid_problem *problem = &loop->problem;
   fg_grid_loop_result *result = &loop->result;
   result->scans = loop->scan_count;
@@ -338,7 +338,7 @@ static void say_effects(fg_grid_loop_result *r) {
   if (said) fg_text_clip(r->sentence + used, sizeof r->sentence - used, ".");
 }
 
-void fg_grid_loop_say(fg_grid_loop_result *r) {
+void fg_grid_loop_write_sentence(fg_grid_loop_result *r) {
   const fg_grid_claim *ratio = &r->claim[0];
   if (r->tied && ratio->verdict == FG_GRID_TIED)
     fg_text_clip(r->sentence, sizeof r->sentence,

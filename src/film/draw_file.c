@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "film/kept.h"
+#include "film/draw_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -20,9 +20,9 @@ static void add_to_sum(struct sha256_ctx *sum, double value) {
   sha256_update(sum, (size_t)length, (const uint8_t *)text);
 }
 
-/* Sum of all that a draw hangs on. */
-static void sum_up(const fg_film_report *r, const fg_film_bearing *perfect,
-                   const fg_film_stock *stock, char hex[65]) {
+/* Sums all that the result of a draw depends on. */
+static void sum_inputs(const fg_film_report *r, const fg_film_bearing *perfect,
+                       const fg_film_stock *stock, char hex[65]) {
   struct sha256_ctx sum;
   const fg_film_options *o = &r->options;
   const double numbers[] = {o->load_n,
@@ -39,15 +39,15 @@ static void sum_up(const fg_film_report *r, const fg_film_bearing *perfect,
                             (double)o->pads,
                             (double)o->bumps_per_pad,
                             o->pitch_deg,
-                            (double)o->top,
+                            (double)o->top_foil,
                             o->top_foil_mm,
                             o->material.youngs_modulus_gpa,
                             o->material.poisson_ratio,
                             (double)o->cells_per_bump,
                             (double)o->cells_axial,
                             o->touching_um,
-                            o->shim_low_pct,
-                            o->shim_high_pct,
+                            o->draw.shim_low_pct,
+                            o->draw.shim_high_pct,
                             (double)o->seed,
                             r->tolerance.threshold_rpm,
                             o->within_pct};
@@ -78,18 +78,18 @@ static void list_result_numbers(fg_film_result *result, double *numbers[RESULT_N
   memcpy(numbers, all, sizeof all);
 }
 
-/* Reads "draw outcome side number ..."; false for a line that was cut off. */
-static bool read_kept_line(const char *line, fg_film_result *result) {
+/* Reads "draw outcome threshold number ..."; false for a line that was cut off. */
+static bool read_draw_line(const char *line, fg_film_result *result) {
   double *numbers[RESULT_NUMBERS];
   unsigned long draw;
-  unsigned outcome, side;
+  unsigned outcome, threshold;
   int used = 0;
   size_t length = strlen(line);
   if (!length || line[length - 1] != '\n') return false;
-  if (sscanf(line, "%lu %u %u%n", &draw, &outcome, &side, &used) != 3) return false;
-  if (outcome > FG_FILM_UNSOLVED || side > FG_FILM_ABOVE) return false;
+  if (sscanf(line, "%lu %u %u%n", &draw, &outcome, &threshold, &used) != 3) return false;
+  if (outcome > FG_FILM_UNSOLVED || threshold > FG_FILM_THRESHOLD_ABOVE) return false;
   *result = (fg_film_result){.outcome = (fg_film_outcome)outcome,
-                             .side = (fg_film_side)side,
+                             .threshold = (fg_film_threshold_verdict)threshold,
                              .draw = draw,
                              .log_decrement = NAN};
   list_result_numbers(result, numbers);
@@ -103,12 +103,12 @@ static bool read_kept_line(const char *line, fg_film_result *result) {
   return *at == '\n';
 }
 
-static fg_status read_kept(fg_context *ctx, FILE *file, const char *sum, fg_film_draws *draws,
-                           fg_film_kept *kept) {
+static fg_status read_draws(fg_context *ctx, const char *sum, fg_film_draws *draws,
+                            fg_film_draw_file *file) {
   char line[LINE_MAX_BYTES];
   fg_film_result result;
   bool ours = false;
-  while (fgets(line, sizeof line, file)) {
+  while (fgets(line, sizeof line, file->stream)) {
     if (!strncmp(line, heading, sizeof heading - 1)) {
       ours = !strncmp(line + sizeof heading - 1, sum, strlen(sum));
       if (!ours)
@@ -116,75 +116,74 @@ static fg_status read_kept(fg_context *ctx, FILE *file, const char *sum, fg_film
             ctx, FG_ERR_DATA,
             "%s: holds draws of another bearing, load, mesh, seed or program: keep these "
             "in a file of their own",
-            kept->path);
+            file->path);
       continue;
     }
     if (!ours)
-      return fg_fail(ctx, FG_ERR_DATA, "%s: no file that `foilgauge film --keep` wrote",
-                     kept->path);
-    if (!read_kept_line(line, &result) || !result.draw || result.draw > draws->count) continue;
-    draws->kept += !kept->known[result.draw - 1];
-    kept->known[result.draw - 1] = true;
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: not a file that `foilgauge film --keep` wrote; name another one",
+                     file->path);
+    if (!read_draw_line(line, &result) || !result.draw || result.draw > draws->count) continue;
+    draws->kept += !file->known[result.draw - 1];
+    file->known[result.draw - 1] = true;
     draws->result[result.draw - 1] = result;
   }
   return FG_OK;
 }
 
 /* Begins with the heading, on a line of its own whatever a killed run left. */
-static fg_status begin_part(fg_context *ctx, const char *sum, fg_film_kept *kept) {
-  bool cut = fseek(kept->file, -1, SEEK_END) == 0 && fgetc(kept->file) != '\n';
-  fseek(kept->file, 0, SEEK_END);
-  if (fprintf(kept->file, "%s%s%s\n", cut ? "\n" : "", heading, sum) > 0 && fflush(kept->file) == 0)
+static fg_status begin_part(fg_context *ctx, const char *sum, fg_film_draw_file *file) {
+  bool cut = fseek(file->stream, -1, SEEK_END) == 0 && fgetc(file->stream) != '\n';
+  fseek(file->stream, 0, SEEK_END);
+  if (fprintf(file->stream, "%s%s%s\n", cut ? "\n" : "", heading, sum) > 0 &&
+      fflush(file->stream) == 0)
     return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
+  return fg_output_fail(ctx, file->path, errno);
 }
 
-fg_status fg_film_kept_open(fg_context *ctx, const fg_film_report *report,
-                            const fg_film_bearing *perfect, const fg_film_stock *stock,
-                            fg_film_draws *draws, fg_film_kept *kept) {
+fg_status fg_film_draw_file_open(fg_context *ctx, const fg_film_report *report,
+                                 const fg_film_bearing *perfect, const fg_film_stock *stock,
+                                 fg_film_draws *draws, fg_film_draw_file *file) {
   char sum[65];
   void *block;
   fg_status status = FG_OK;
-  *kept = (fg_film_kept){.path = report->options.keep, .count = draws->count};
-  FG_TRY(fg_memory_allocate(ctx, draws->count, sizeof *kept->known, &block));
-  kept->known = block;
-  pthread_mutex_init(&kept->lock, NULL);
-  if (!kept->path) return FG_OK;
-  sum_up(report, perfect, stock, sum);
-  kept->file = fopen(kept->path, "a+");
-  if (!kept->file) {
-    status = fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
-  } else {
-    rewind(kept->file);
-    status = read_kept(ctx, kept->file, sum, draws, kept);
-    if (status == FG_OK) status = begin_part(ctx, sum, kept);
-  }
+  *file = (fg_film_draw_file){.path = report->options.draw.keep, .count = draws->count};
+  FG_TRY(fg_memory_allocate(ctx, draws->count, sizeof *file->known, &block));
+  file->known = block;
+  pthread_mutex_init(&file->lock, NULL);
+  if (!file->path) return FG_OK;
+  sum_inputs(report, perfect, stock, sum);
+  status = fg_file_open_to_append(ctx, file->path, &file->stream);
+  if (status == FG_OK) status = read_draws(ctx, sum, draws, file);
+  if (status == FG_OK) status = begin_part(ctx, sum, file);
   if (status != FG_OK) {
     fg_context unused;
-    fg_film_kept_close(&unused, kept);
+    fg_film_draw_file_close(&unused, file);
   }
   return status;
 }
 
-fg_status fg_film_kept_add(fg_context *ctx, fg_film_kept *kept, const fg_film_result *result) {
+fg_status fg_film_draw_file_add(fg_context *ctx, fg_film_draw_file *file,
+                                const fg_film_result *result) {
   double *numbers[RESULT_NUMBERS];
   fg_film_result copy = *result;
-  if (!kept->file) return FG_OK;
+  if (!file->stream) return FG_OK;
   list_result_numbers(&copy, numbers);
-  pthread_mutex_lock(&kept->lock);
-  fprintf(kept->file, "%zu %u %u", result->draw, (unsigned)result->outcome, (unsigned)result->side);
+  pthread_mutex_lock(&file->lock);
+  fprintf(file->stream, "%zu %u %u", result->draw, (unsigned)result->outcome,
+          (unsigned)result->threshold);
   for (size_t i = 0; numbers[i]; i++)
-    fprintf(kept->file, " %.17g", *numbers[i]);
-  fputc('\n', kept->file);
-  bool fine = fflush(kept->file) == 0 && !ferror(kept->file);
-  pthread_mutex_unlock(&kept->lock);
-  return fine ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
+    fprintf(file->stream, " %.17g", *numbers[i]);
+  fputc('\n', file->stream);
+  bool fine = fflush(file->stream) == 0 && !ferror(file->stream);
+  pthread_mutex_unlock(&file->lock);
+  return fine ? FG_OK : fg_output_fail(ctx, file->path, errno);
 }
 
-fg_status fg_film_kept_close(fg_context *ctx, fg_film_kept *kept) {
-  bool fine = !kept->file || fclose(kept->file) == 0;
-  pthread_mutex_destroy(&kept->lock);
-  free(kept->known);
-  kept->known = NULL;
-  return fine ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: %s", kept->path, strerror(errno));
+fg_status fg_film_draw_file_close(fg_context *ctx, fg_film_draw_file *file) {
+  bool fine = !file->stream || fclose(file->stream) == 0;
+  pthread_mutex_destroy(&file->lock);
+  free(file->known);
+  file->known = NULL;
+  return fine ? FG_OK : fg_output_fail(ctx, file->path, errno);
 }
