@@ -24,8 +24,9 @@
 enum { POWERS = 121, DOF_MIN = 8, ROWS_MAX = 5000 };
 #define POWER_LOW  (-3.0)
 #define POWER_STEP 0.05
-/* A claim does not show on the other scale when its test there has a larger p-value. */
-#define GONE_P 0.05
+/* A claim does not show on the other scale when its test there, which it was chosen for among many,
+ * has a larger p-value. */
+#define GONE_P 0.01
 /* A scale is claimed where its likelihood proves it and the sizes of the residuals, which tails
  * hardly move, see the scatter as well. */
 #define SEEN_P 0.01
@@ -297,26 +298,30 @@ void fg_loop_scale_name(double power, const char *response, char *text, size_t s
     fg_text_clip(text, size, "%s^%.3g", response, power);
 }
 
-/* P-value of wrong rows on the scale that all rows choose, over all that could have been wrong. A
- * skewed response has a long tail on its own scale: its largest values lie far out, and are right.
- */
+/* P-value of wrong rows on the scale that all rows choose, over all that could have been wrong; 0
+ * where the other rows need no such scale and the wrong rows explain more by Schwarz's criterion
+ * over all choices of rows (Chen and Chen 2008). A skewed response has a long tail on its own
+ * scale: its largest values lie far out, and are right. */
 static fg_status wrong_rows_p(fg_context *ctx, const fg_engine_run *run, size_t m, double *p,
                               fg_loop_response_scale *scale) {
-  const fg_engine_set sets[2] = {set_without(&run->set, -1, true),
-                                 set_without(&run->set, (int)m, true)};
-  scale_fit f[2] = {{0}, {0}};
-  double rss[2], dof[2];
+  const fg_engine_set none = set_without(&run->set, -1, true),
+                      own = set_without(&run->set, (int)m, true);
+  scale_fit f[2] = {0};
+  double rss[2], dof[2], wrong, ignored;
+  bool needed = scale->chosen != 1;
   fg_status status = FG_OK;
-  *p = 0;
-  for (size_t k = 0; k < 2; k++)
-    FG_TRY_EXIT(open_scale_of(ctx, run, &sets[k], &f[k]));
+  FG_TRY_EXIT(open_scale_of(ctx, run, &none, &f[0]));
+  FG_TRY_EXIT(open_scale_of(ctx, run, &own, &f[1]));
   FG_TRY_EXIT(profile(ctx, &f[0], scale));
-  for (size_t k = 0; scale->known && k < 2; k++)
+  FG_TRY_EXIT(fit_scale(ctx, &f[1], 1, &wrong, &ignored));
+  if (!scale->known || scale->chosen == 1) goto exit;
+  for (size_t k = 0; k < 2; k++)
     FG_TRY_EXIT(fit_scale(ctx, &f[k], scale->chosen, &rss[k], &dof[k]));
   double n = (double)f[0].training.n, rows = (double)run->set.candidate[m].rows;
-  if (scale->known && dof[1] >= 1)
-    *p = gsl_cdf_fdist_Q((rss[0] - rss[1]) / rows / (rss[1] / dof[1]), rows, dof[1]) *
-         exp(lgamma(n + 1) - lgamma(rows + 1) - lgamma(n - rows + 1));
+  double ways = lgamma(n + 1) - lgamma(rows + 1) - lgamma(n - rows + 1);
+  bool explains = n * log(rss[0] / wrong) < rows * log(n) + 2 * ways;
+  if (dof[1] < 1 || !(needed || explains)) goto exit;
+  *p = gsl_cdf_fdist_Q((rss[0] - rss[1]) / rows / (rss[1] / dof[1]), rows, dof[1]) * exp(ways);
 exit:
   for (size_t k = 0; k < 2; k++)
     close_scale(&f[k]);
@@ -331,7 +336,7 @@ static fg_status p_on_scale(fg_context *ctx, const fg_engine_run *run, size_t m,
   *p = 0;
   *scale = run->result->scale;
   if (is_wrong_rows(candidate)) return wrong_rows_p(ctx, run, m, p, scale);
-  if (!may_vanish(candidate)) return FG_OK;
+  if (!may_vanish(candidate) || scale->chosen == 1) return FG_OK;
   return candidate->effect->scatter == FG_LOOP_SPREAD
              ? spread_p(ctx, run, candidate, scale->chosen, p)
              : interaction_p(ctx, run, m, scale->chosen, p);
@@ -355,7 +360,7 @@ fg_status fg_engine_profile_scale(fg_context *ctx, fg_engine_run *run) {
   if (!has_scale(run)) return FG_OK;
   FG_TRY_EXIT(open_scale(ctx, run, -1, &f));
   FG_TRY_EXIT(profile(ctx, &f, scale));
-  for (size_t m = 0; scale->known && scale->chosen != 1 && m < run->result->claims; m++) {
+  for (size_t m = 0; scale->known && m < run->result->claims; m++) {
     fg_loop_response_scale own;
     double p;
     FG_TRY_EXIT(p_on_scale(ctx, run, m, &p, &own));
