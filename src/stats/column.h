@@ -38,11 +38,4 @@ fg_status fg_table_parse_words(fg_context *ctx, const char *source, const char *
  * compares all columns. */
 fg_status fg_table_warn_decimals(fg_context *ctx, fg_table *table, unsigned char separator);
 
-/* Makes moments numbers: days since the earliest of their column. Those are dates in the column
- * `order` (NULL: none), and dates of which a column has more than `max` that hardly recur; dates
- * that recur stay words, as each may have a level of its own. *times becomes the name of the only
- * column of moments that has one in every row, else NULL. `said` is as of fg_table_count_words. */
-fg_status fg_table_count_times(fg_context *ctx, fg_table *table, size_t max, const char *order,
-                               const char **times, char **said);
-
 #endif

@@ -8,6 +8,7 @@
 #include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/table_times.h"
 #include "stats/column.h"
 
 /* Returns the number that a word counts, in a column of such words; NaN: none. */

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/text.h"
-#include "stats/column.h"
+#include "foilgauge/table_times.h"
 #include "table_loop/engine.h"
 #include "table_loop/places.h"
 

@@ -54,6 +54,9 @@ P
 
 # The moments are the order, though the rows are shuffled; a column of runs comes first, and stays the order.
 finds drift 'names == ["table.order_drift(time)"] and "time counts days since 2026-03-01" in said'
+"$program" loop --table drift.csv --response y --model '1 + bar' --model-out model.json -o /dev/null || fail "no model"
+"$program" doe drift.csv --response y --model model.json -o doe.json || fail "doe does not read the loop's moments"
+grep -q '"id": "table.order_drift"' doe.json || fail "doe took no drift out"
 finds daily 'names == ["table.periodic(time)"] and abs(j["claims"][0]["parameters"]["period"] - 1) < 0.05'
 finds drift_run 'names == ["table.linear(time)"]'
 # A column with gaps is no candidate unless their rows are left out; a comment in a few rows costs none. Rows keep the
