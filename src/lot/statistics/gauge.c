@@ -41,13 +41,13 @@ static void list_scans(const fg_lot_analysis *analysis, size_t part_column, size
 
 /* Counts the scans of each cell; returns the largest count. */
 static size_t count_trials(gauge_scans *scans, size_t count) {
-  size_t most = 0, operators = scans->operators.count;
+  size_t max = 0, operators = scans->operators.count;
   memset(scans->seen, 0, scans->parts.count * operators * sizeof *scans->seen);
   for (size_t i = 0; i < count; i++) {
     size_t seen = ++scans->seen[scans->known[i].part * operators + scans->known[i].who];
-    most = seen > most ? seen : most;
+    max = seen > max ? seen : max;
   }
-  return most;
+  return max;
 }
 
 /* Orders the values of a complete study. */
