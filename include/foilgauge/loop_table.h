@@ -61,6 +61,13 @@ typedef struct fg_loop_table_problem {
   struct fg_loop_formula *model; /* of problem.declared; NULL: arc_length, which has no columns */
 } fg_loop_table_problem;
 
+/* Makes dates with hardly any twice (2026-03-01 08:15) days since the first, and those of the
+ * declared order. They become spec->order, wherever their rows stand in the file, unless another
+ * column is the order (run, sequence ...) or rows are grouped. `said` (appended to; may be NULL at
+ * first) tells which columns; the caller frees it. */
+fg_status fg_loop_table_count_times(fg_context *ctx, fg_table *table, fg_loop_table_spec *spec,
+                                    char **said);
+
 /* Missing cells, missing columns or a formula that cannot be built are FG_ERR_DATA or FG_ERR_USAGE
  * with a message. Columns that are results of the same measurement (bump radius and angle, height
  * ...) are no causes and are excluded. */

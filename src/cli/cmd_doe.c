@@ -13,6 +13,7 @@
 #include "cli/runs.h"
 #include "cli/values.h"
 #include "foilgauge/loop_model.h"
+#include "foilgauge/loop_table.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/plan.h"
 #include "foilgauge/text.h"
@@ -337,6 +338,15 @@ static fg_status describe_taken(fg_context *ctx, doe_run *run) {
   return FG_OK;
 }
 
+/* Moments are numbers, as they were to the loop that made the model. */
+static fg_status count_times(fg_context *ctx, fg_table *table) {
+  fg_loop_table_spec spec = {0};
+  char *said = NULL;
+  fg_status status = fg_loop_table_count_times(ctx, table, &spec, &said);
+  free(said);
+  return status;
+}
+
 /* The effects of a model file are taken out of the response, and its formula is the one to analyse.
  */
 static fg_status apply_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
@@ -348,6 +358,7 @@ static fg_status apply_loop_model(fg_context *ctx, doe_run *run, fg_table *table
   if (run->arguments.options.response && strcmp(run->arguments.options.response, response) != 0)
     return fg_fail(ctx, FG_ERR_DATA, "%s: a model of the response '%s', not of '%s'", name,
                    response, run->arguments.options.response);
+  FG_TRY(count_times(ctx, table));
   FG_TRY(fg_loop_model_take(ctx, run->loop_model, table, &run->takings));
   run->arguments.options.formula = fg_loop_model_formula(run->loop_model);
   return describe_taken(ctx, run);

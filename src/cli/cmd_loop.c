@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
@@ -61,6 +62,7 @@ enum {
   OPTION_FORMING_MODEL,
   OPTION_EXPECT,
   OPTION_PERIOD,
+  OPTION_COMPLETE,
 };
 
 /* A lot's response where none is named. */
@@ -81,6 +83,10 @@ static const struct argp_option options[] = {
     {"response", OPTION_RESPONSE, "COLUMN", 0,
      "What was measured; with --lot and --doe any reported quantity (--lot: @lot_response@)", 0},
     {"without", OPTION_WITHOUT, "COLUMN", 0, "Leave this column out (may be repeated)", 0},
+    {"complete", OPTION_COMPLETE, NULL, 0,
+     "With --table: leave out rows with an empty cell (default: columns with one, which are then "
+     "no candidates)",
+     0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans of --doe; overrules the files", 0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"threads", OPTION_THREADS, "N", 0,
@@ -173,11 +179,17 @@ static void parse_expected(struct argp_state *state, const char *text, bool *exp
     expected[k] = true;
 }
 
+static bool is_name_of_table(const char *text) {
+  const char *end = strrchr(text, '.');
+  return *text != '-' && end && (!strcasecmp(end, ".csv") || !strcasecmp(end, ".tsv"));
+}
+
 static void check_source(struct argp_state *state, const fg_loop_source_request *source) {
   int given = (source->table != NULL) + (source->lot != NULL) + (source->runs != NULL);
   if (!given) argp_error(state, "--table DATA.csv is missing");
   if (given > 1) argp_error(state, "one of --table, --lot and --doe at a time");
   if (source->scans && !source->runs) argp_error(state, "--scans belongs to --doe RUNS.csv");
+  if (source->complete && !source->table) argp_error(state, "--complete belongs to --table");
 }
 
 static const fg_cli_value values[] = {
@@ -199,6 +211,7 @@ static const fg_cli_value values[] = {
     FG_CLI_VALUE('o', loop_arguments, outputs.path[FG_LOOP_JSON]),
     FG_CLI_NUMBER(OPTION_DPI, loop_arguments, source.dpi, 1, 1e6),
     FG_CLI_VALUE(OPTION_ALLOW_LOSSY, loop_arguments, source.allow_lossy),
+    FG_CLI_VALUE(OPTION_COMPLETE, loop_arguments, source.complete),
     FG_CLI_NUMBER(OPTION_THREADS, loop_arguments, source.threads, 1, 1024),
     {0},
 };
@@ -231,7 +244,9 @@ static error_t parse_loop_table_option(int key, char *text, struct argp_state *s
     arguments->source.without[arguments->source.withouts++] = text;
     return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "%s: give the data by --table, --lot or --doe", text);
+    if (arguments->source.table || !is_name_of_table(text))
+      argp_error(state, "%s: give the data by --table, --lot or --doe", text);
+    arguments->source.table = text;
     return 0;
   case ARGP_KEY_END:
     check_source(state, &arguments->source);
@@ -340,7 +355,7 @@ static bool is_about_a_table(int argc, char **argv) {
   for (int i = 1; i < argc; i++)
     for (size_t w = 0; w < sizeof words / sizeof *words; w++)
       if (!strncmp(argv[i], words[w], strlen(words[w]))) return true;
-  return false;
+  return argc > 1 && is_name_of_table(argv[1]);
 }
 
 const struct argp fg_loop_table_parser = {options,

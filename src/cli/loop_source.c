@@ -41,12 +41,66 @@ static fg_status drop_columns(fg_context *ctx, const fg_loop_source_request *req
   return FG_OK;
 }
 
+/* Columns with fewer than half of their cells are comments: they cost no rows. */
+static bool is_column_filled(const fg_column *column, size_t rows) {
+  return 2 * column->missing_count < rows;
+}
+
+static bool is_row_complete(const fg_table *table, size_t row) {
+  for (size_t c = 0; c < table->columns; c++) {
+    const fg_column *column = &table->column[c];
+    if (is_column_filled(column, table->rows) && column->word &&
+        column->word[row] == FG_TABLE_MISSING)
+      return false;
+  }
+  return true;
+}
+
+/* Rows keep the numbers that they have in the file. */
+static fg_status name_rows(fg_context *ctx, fg_loop_source *source, const size_t *row,
+                           size_t count) {
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *source->name, (void **)&source->name));
+  source->names = count;
+  for (size_t i = 0; i < count; i++)
+    FG_TRY(fg_text_print(ctx, &source->name[i], "row %zu", row[i] + 1));
+  source->row_name = (const char *const *)source->name;
+  return FG_OK;
+}
+
+static fg_status keep_complete_rows(fg_context *ctx, fg_loop_source *source) {
+  fg_table complete = {0}, *table = &source->read;
+  size_t *row = NULL, kept = 0, rows = table->rows;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *row, (void **)&row));
+  for (size_t i = 0; i < rows; i++)
+    if (is_row_complete(table, i)) row[kept++] = i;
+  if (kept == rows) goto exit;
+  if (!kept) {
+    status = fg_fail(ctx, FG_ERR_DATA,
+                     "%s: every row has an empty cell; --without COLUMN leaves "
+                     "out a column",
+                     table->source);
+    goto exit;
+  }
+  FG_TRY_EXIT(fg_table_select(ctx, table, row, kept, &complete));
+  fg_table_free(table);
+  *table = complete;
+  FG_TRY_EXIT(name_rows(ctx, source, row, kept));
+  FG_TRY_EXIT(fg_text_append(ctx, &source->said, "left out: %zu of %zu rows, with an empty cell",
+                             rows - kept, rows));
+exit:
+  free(row);
+  return status;
+}
+
 static fg_status read_table(fg_context *ctx, const fg_loop_source_request *request,
-                            fg_loop_source *source) {
+                            fg_loop_table_spec *spec, fg_loop_source *source) {
   source->path = request->table;
   FG_TRY(fg_table_load(ctx, request->table, &source->read, source->sha256));
   source->table = &source->read;
-  return drop_columns(ctx, request, &source->read);
+  FG_TRY(drop_columns(ctx, request, &source->read));
+  if (request->complete) FG_TRY(keep_complete_rows(ctx, source));
+  return fg_loop_table_count_times(ctx, &source->read, spec, &source->said);
 }
 
 static fg_status read_lot(fg_context *ctx, const fg_loop_source_request *request, bool has_design,
@@ -87,6 +141,7 @@ static fg_status name_runs(fg_context *ctx, fg_loop_source *source) {
   const fg_run_sheet *measured = &source->measured;
   FG_TRY(
       fg_memory_allocate(ctx, measured->table.rows, sizeof *source->name, (void **)&source->name));
+  source->names = measured->table.rows;
   for (size_t i = 0; i < measured->table.rows; i++)
     FG_TRY(fg_text_print(ctx, &source->name[i], "run %zu", measured->row[i]));
   source->row_name = (const char *const *)source->name;
@@ -197,7 +252,7 @@ static fg_status read_source(fg_context *ctx, const fg_loop_source_request *requ
                              fg_design *design, fg_loop_source *source) {
   if (request->lot) return read_lot(ctx, request, has_design, spec, design, source);
   if (request->runs) return read_runs(ctx, request, outputs, spec, design, source);
-  return read_table(ctx, request, source);
+  return read_table(ctx, request, spec, source);
 }
 
 static fg_table *table_of(const fg_loop_source_request *request, fg_loop_source *source) {
@@ -216,7 +271,7 @@ fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *req
 }
 
 void fg_loop_source_free(fg_loop_source *source) {
-  for (size_t i = 0; source->name && i < source->measured.table.rows; i++)
+  for (size_t i = 0; i < source->names; i++)
     free(source->name[i]);
   free(source->name);
   free(source->input);

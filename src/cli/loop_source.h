@@ -21,6 +21,7 @@ typedef struct fg_loop_source_request {
   double dpi;
   unsigned threads;
   bool allow_lossy;
+  bool complete; /* of a table only rows without an empty cell */
 } fg_loop_source_request;
 
 typedef struct fg_loop_source {
@@ -37,6 +38,7 @@ typedef struct fg_loop_source {
   fg_lot_table lot;
   fg_run_sheet measured;
   char **name;
+  size_t names;
   char *forming_path, forming_sha256[65];
 } fg_loop_source;
 

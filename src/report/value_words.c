@@ -15,8 +15,12 @@ void fg_scan_loop_value_words(double value, double u, char *words, size_t size) 
   } else if (!(expanded > 0) || !isfinite(expanded)) {
     fg_text_clip(words, size, "%.5g", value);
   } else {
-    int decimals = (int)fmin(9, fmax(0, 1 - floor(log10(expanded))));
-    fg_text_clip(words, size, "%.*f ± %.*f", decimals, value, decimals, expanded);
+    enum { DECIMALS_MAX = 9 };
+    int decimals = (int)fmin(DECIMALS_MAX + 1, fmax(0, 1 - floor(log10(expanded))));
+    if (decimals > DECIMALS_MAX)
+      fg_text_clip(words, size, "%.4g ± %.2g", value, expanded);
+    else
+      fg_text_clip(words, size, "%.*f ± %.*f", decimals, value, decimals, expanded);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/table_times.h"
 #include "stats/column.h"
 
 /* Returns the number that a word counts, in a column of such words; NaN: none. */
@@ -54,19 +55,25 @@ static void make_numbers(fg_column *column, size_t rows, const double *values, d
   memset(column->slot, 0, column->slot_count * sizeof *column->slot);
 }
 
+static fg_status count_days(fg_context *ctx, const fg_table *table, fg_column *column,
+                            const double *values, char **said) {
+  size_t first = 0;
+  for (size_t i = 1; i < column->word_count; i++)
+    if (values[i] < values[first]) first = i;
+  fg_status status = fg_text_append(ctx, said, "%s%s counts days since %s", *said ? "; " : "",
+                                    column->name, column->words[first]);
+  make_numbers(column, table->rows, values, values[first]);
+  return status;
+}
+
 static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column *column, size_t max,
                               char **said) {
   double *values = NULL;
-  size_t first = 0;
   const char *separator = *said ? "; " : "";
   FG_TRY(fg_memory_allocate(ctx, column->word_count, sizeof *values, (void **)&values));
   fg_status status = FG_OK;
   if (count_all(column, count_date, values)) {
-    for (size_t i = 1; i < column->word_count; i++)
-      if (values[i] < values[first]) first = i;
-    status = fg_text_append(ctx, said, "%s%s counts days since %s", separator, column->name,
-                            column->words[first]);
-    make_numbers(column, table->rows, values, values[first]);
+    status = count_days(ctx, table, column, values, said);
   } else if (column->word_count > max && count_all(column, count_serial, values)) {
     status =
         fg_text_append(ctx, said, "%s%s counts by the digits behind '%.*s'", separator,
@@ -82,6 +89,29 @@ fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t max, cha
     fg_column *column = &table->column[i];
     if (column->word_count > 1 && !column->number_count && !column->uncertainty)
       FG_TRY(count_column(ctx, table, column, max, said));
+  }
+  return FG_OK;
+}
+
+fg_status fg_table_count_times(fg_context *ctx, fg_table *table, size_t max, const char *order,
+                               const char **times, char **said) {
+  size_t counted = 0;
+  *times = NULL;
+  for (size_t i = 0; i < table->columns; i++) {
+    fg_column *column = &table->column[i];
+    bool meant = order && !strcmp(column->name, order);
+    bool recur = column->word_count <= max || 2 * table->rows >= 3 * column->word_count;
+    double *values = NULL;
+    if (column->word_count < 2 || column->number_count || column->uncertainty) continue;
+    if (recur && !meant) continue;
+    FG_TRY(fg_memory_allocate(ctx, column->word_count, sizeof *values, (void **)&values));
+    fg_status status = FG_OK;
+    if (count_all(column, count_date, values)) {
+      status = count_days(ctx, table, column, values, said);
+      *times = ++counted == 1 && !column->missing_count ? column->name : NULL;
+    }
+    free(values);
+    FG_TRY(status);
   }
   return FG_OK;
 }

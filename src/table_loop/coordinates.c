@@ -97,6 +97,16 @@ fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *bu
   return fg_text_append(ctx, text, "%s%s: %s", *text ? "; " : "", name, why);
 }
 
+/* Rows that a column lacks, and the way to look into it nevertheless. */
+static fg_status leave_out_gaps(fg_context *ctx, const fg_loop_table_state *build,
+                                const fg_column *column) {
+  char why[200];
+  size_t rows = build->table->rows, missing = column->missing_count;
+  fg_text_clip(why, sizeof why, "cells are missing in %zu of %zu rows%s", missing, rows,
+               2 * missing < rows ? " (--complete leaves out these rows instead)" : "");
+  return fg_loop_table_leave_out(ctx, build, column->name, why);
+}
+
 static fg_status fill_words(fg_context *ctx, const fg_loop_table_state *build,
                             const fg_column *column, fg_loop_coordinate *at) {
   const size_t *row = build->out->row;
@@ -143,8 +153,7 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   if (!strcmp(column->name, spec->response)) return FG_OK;
   if (spec->offset && !strcmp(column->name, spec->offset)) return FG_OK;
   if (fg_quantity_is_result(column->name)) return FG_OK;
-  if (column->missing_count)
-    return fg_loop_table_leave_out(ctx, build, column->name, "cells are missing");
+  if (column->missing_count) return leave_out_gaps(ctx, build, column);
   if (column->uncertainty || (words && column->number_count))
     return names_are_meant(spec, column->name)
                ? fg_loop_table_leave_out(ctx, build, column->name, "words among numbers")

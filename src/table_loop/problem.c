@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/text.h"
+#include "foilgauge/table_times.h"
 #include "table_loop/engine.h"
 #include "table_loop/places.h"
 
@@ -22,6 +23,14 @@ static const char *first_column(const fg_table *table, const char *const *names,
         !column->missing_count)
       return names[i];
   return NULL;
+}
+
+fg_status fg_loop_table_count_times(fg_context *ctx, fg_table *table, fg_loop_table_spec *spec,
+                                    char **said) {
+  const char *times;
+  FG_TRY(fg_table_count_times(ctx, table, FG_LOOP_COLUMNS, spec->order, &times, said));
+  if (!spec->order && !spec->group && !first_column(table, order_names, 5)) spec->order = times;
+  return FG_OK;
 }
 
 static fg_status choose_order(fg_context *ctx, fg_loop_table_state *build) {

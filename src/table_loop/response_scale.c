@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of the response over its geometric mean, (y^p - 1) / p has the same unit at every power p, so
- * that residual sums are compared as they are (Box and Cox 1964). Claims of scatter and interaction
- * are left out of the model: the question is whether another scale makes them needless. */
+ * that residual sums are compared as they are (Box and Cox 1964). Claims of scatter, interaction
+ * and wrong rows are left out of the model: the question is whether another scale makes them
+ * needless. */
 #include "table_loop/response_scale.h"
 
 #include <math.h>
@@ -23,8 +24,9 @@
 enum { POWERS = 121, DOF_MIN = 8, ROWS_MAX = 5000 };
 #define POWER_LOW  (-3.0)
 #define POWER_STEP 0.05
-/* A claim does not show on the other scale when its test there has a larger p-value. */
-#define GONE_P 0.05
+/* A claim does not show on the other scale when its test there, which it was chosen for among many,
+ * has a larger p-value. */
+#define GONE_P 0.01
 /* A scale is claimed where its likelihood proves it and the sizes of the residuals, which tails
  * hardly move, see the scatter as well. */
 #define SEEN_P 0.01
@@ -52,11 +54,17 @@ static bool may_vanish(const fg_loop_candidate *candidate) {
          (candidate->effect->pair && !fg_engine_is_outlier(candidate));
 }
 
-/* The set without scatter and interactions, but with `keep`; -1: none. */
-static fg_engine_set set_without(const fg_engine_set *set, int keep) {
+static bool is_wrong_rows(const fg_loop_candidate *candidate) {
+  return candidate->effect->outlier == FG_LOOP_WRONG_ROW && !candidate->effect->pair;
+}
+
+/* The set without scatter and interactions, and without wrong rows where `rows`, but with `keep`;
+ * -1: none. */
+static fg_engine_set set_without(const fg_engine_set *set, int keep, bool rows) {
   fg_engine_set left = {0};
   for (size_t m = 0; m < set->count; m++) {
-    if (may_vanish(&set->candidate[m]) && (int)m != keep) continue;
+    bool out = may_vanish(&set->candidate[m]) || (rows && is_wrong_rows(&set->candidate[m]));
+    if (out && (int)m != keep) continue;
     left.candidate[left.count] = set->candidate[m];
     memcpy(left.shape[left.count++], set->shape[m], sizeof set->shape[m]);
   }
@@ -78,7 +86,7 @@ static fg_status open_scale_of(fg_context *ctx, const fg_engine_run *run, const 
 }
 
 static fg_status open_scale(fg_context *ctx, const fg_engine_run *run, int keep, scale_fit *f) {
-  const fg_engine_set set = set_without(&run->set, keep);
+  const fg_engine_set set = set_without(&run->set, keep, false);
   return open_scale_of(ctx, run, &set, f);
 }
 
@@ -233,7 +241,7 @@ exit:
 /* P-value of another scale over its kind, beside the row that lies farthest from the others. */
 static fg_status scale_p_beside_row(fg_context *ctx, const fg_engine_run *run, scale_fit *f,
                                     double *p) {
-  fg_engine_set set = set_without(&run->set, -1);
+  fg_engine_set set = set_without(&run->set, -1, false);
   fg_loop_response_scale scale = {.p_value = 1};
   scale_fit beside = {0};
   fg_status status = FG_OK;
@@ -290,6 +298,50 @@ void fg_loop_scale_name(double power, const char *response, char *text, size_t s
     fg_text_clip(text, size, "%s^%.3g", response, power);
 }
 
+/* P-value of wrong rows on the scale that all rows choose, over all that could have been wrong; 0
+ * where the other rows need no such scale and the wrong rows explain more by Schwarz's criterion
+ * over all choices of rows (Chen and Chen 2008). A skewed response has a long tail on its own
+ * scale: its largest values lie far out, and are right. */
+static fg_status wrong_rows_p(fg_context *ctx, const fg_engine_run *run, size_t m, double *p,
+                              fg_loop_response_scale *scale) {
+  const fg_engine_set none = set_without(&run->set, -1, true),
+                      own = set_without(&run->set, (int)m, true);
+  scale_fit f[2] = {0};
+  double rss[2], dof[2], wrong, ignored;
+  bool needed = scale->chosen != 1;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_scale_of(ctx, run, &none, &f[0]));
+  FG_TRY_EXIT(open_scale_of(ctx, run, &own, &f[1]));
+  FG_TRY_EXIT(profile(ctx, &f[0], scale));
+  FG_TRY_EXIT(fit_scale(ctx, &f[1], 1, &wrong, &ignored));
+  if (!scale->known || scale->chosen == 1) goto exit;
+  for (size_t k = 0; k < 2; k++)
+    FG_TRY_EXIT(fit_scale(ctx, &f[k], scale->chosen, &rss[k], &dof[k]));
+  double n = (double)f[0].training.n, rows = (double)run->set.candidate[m].rows;
+  double ways = lgamma(n + 1) - lgamma(rows + 1) - lgamma(n - rows + 1);
+  bool explains = n * log(rss[0] / wrong) < rows * log(n) + 2 * ways;
+  if (dof[1] < 1 || !(needed || explains)) goto exit;
+  *p = gsl_cdf_fdist_Q((rss[0] - rss[1]) / rows / (rss[1] / dof[1]), rows, dof[1]) * exp(ways);
+exit:
+  for (size_t k = 0; k < 2; k++)
+    close_scale(&f[k]);
+  return status;
+}
+
+/* P-value of a claim on another scale; 0 for one that shows on every scale. *scale becomes the one
+ * that shows it. */
+static fg_status p_on_scale(fg_context *ctx, const fg_engine_run *run, size_t m, double *p,
+                            fg_loop_response_scale *scale) {
+  const fg_loop_candidate *candidate = &run->set.candidate[m];
+  *p = 0;
+  *scale = run->result->scale;
+  if (is_wrong_rows(candidate)) return wrong_rows_p(ctx, run, m, p, scale);
+  if (!may_vanish(candidate) || scale->chosen == 1) return FG_OK;
+  return candidate->effect->scatter == FG_LOOP_SPREAD
+             ? spread_p(ctx, run, candidate, scale->chosen, p)
+             : interaction_p(ctx, run, m, scale->chosen, p);
+}
+
 static void tie_scale(const fg_engine_run *run, fg_loop_claim *claim) {
   const fg_loop_candidate scale = {.effect = fg_loop_scale_effect()};
   char name[FG_LOOP_NAME];
@@ -308,14 +360,12 @@ fg_status fg_engine_profile_scale(fg_context *ctx, fg_engine_run *run) {
   if (!has_scale(run)) return FG_OK;
   FG_TRY_EXIT(open_scale(ctx, run, -1, &f));
   FG_TRY_EXIT(profile(ctx, &f, scale));
-  for (size_t m = 0; scale->known && scale->chosen != 1 && m < run->result->claims; m++) {
-    const fg_loop_candidate *candidate = &run->set.candidate[m];
-    double p = 0;
-    if (!may_vanish(candidate)) continue;
-    FG_TRY_EXIT(candidate->effect->scatter == FG_LOOP_SPREAD
-                    ? spread_p(ctx, run, candidate, scale->chosen, &p)
-                    : interaction_p(ctx, run, m, scale->chosen, &p));
+  for (size_t m = 0; scale->known && m < run->result->claims; m++) {
+    fg_loop_response_scale own;
+    double p;
+    FG_TRY_EXIT(p_on_scale(ctx, run, m, &p, &own));
     if (!(p > GONE_P)) continue;
+    *scale = own;
     scale->removes++;
     tie_scale(run, &run->result->claim[m]);
   }

@@ -20,7 +20,8 @@ static bool tied_with_correlation(const fg_loop_claim *claim, fg_loop_candidate 
   return false;
 }
 
-/* Drops correlation that later effects have made unnecessary. */
+/* Drops correlation that later effects, or a curve, have made unnecessary: its p-value is that of
+ * the state before them. */
 static fg_status drop_correlation(fg_context *ctx, fg_engine_run *run) {
   for (size_t m = 0; m < run->result->claims; m++) {
     if (!fg_engine_is_serial(&run->result->claim[m].candidate)) continue;
@@ -28,7 +29,8 @@ static fg_status drop_correlation(fg_context *ctx, fg_engine_run *run) {
     double gain;
     fg_engine_set_remove(&others, m);
     FG_TRY(fg_engine_serial_gain(ctx, run, &others, &gain));
-    if (gain < FG_ENGINE_SERIAL_NEEDED && run->result->claims > 1) fg_engine_drop_claim(run, m--);
+    bool others_explain = run->result->claims > 1 || run->has_curve;
+    if (gain < FG_ENGINE_SERIAL_NEEDED && others_explain) fg_engine_drop_claim(run, m--);
   }
   return FG_OK;
 }

@@ -5,52 +5,75 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "foilgauge/gauge_uneven.h"
 #include "lot/statistics/analysis.h"
 
-/* Full table of part × operator × trial, which a gauge study needs. */
-typedef struct gauge_table {
+/* Scans of a gauge study: part, operator and foil of each. */
+typedef struct gauge_scans {
   fg_manifest_words parts, operators;
-  size_t trials;
-  size_t *seen; /* number of scans by part and operator */
+  size_t count;
+  fg_gauge_trial *at; /* `value` is of the quantity in hand */
   const fg_foil **foil;
-} gauge_table;
+  fg_gauge_trial *known; /* those with a value */
+  double *table;         /* values by part, operator and trial of a complete study */
+  size_t *seen;          /* by part and operator */
+} gauge_scans;
 
-static size_t count_trials(const fg_lot_analysis *analysis, size_t part_column,
-                           size_t operator_column) {
-  const fg_manifest *manifest = &analysis->lot->manifest;
-  const char *part = NULL, *who = NULL;
-  size_t trials = 0;
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    const char *this_part = fg_manifest_cell(manifest, analysis->foils[i].item, part_column);
-    const char *this_one = fg_manifest_cell(manifest, analysis->foils[i].item, operator_column);
-    if (!part) {
-      part = this_part;
-      who = this_one;
-    }
-    trials += !strcmp(part, this_part) && !strcmp(who, this_one);
-  }
-  return trials;
-}
+/* Share of a complete study that must be there: where operators have hardly a part in common, they
+ * and the parts are one. */
+#define FILLED_MIN 0.75
 
-/* Returns false when the scans do not fill the table; there is no study then. */
-static bool fill_gauge_table(const fg_lot_analysis *analysis, gauge_table *table,
-                             size_t part_column, size_t operator_column) {
+/* Lists the scans with both cells. */
+static void list_scans(const fg_lot_analysis *analysis, size_t part_column, size_t operator_column,
+                       gauge_scans *scans) {
   const fg_manifest *manifest = &analysis->lot->manifest;
-  size_t parts = table->parts.count, operators = table->operators.count;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     size_t item = analysis->foils[i].item;
     size_t part =
-        fg_manifest_word_index(&table->parts, fg_manifest_cell(manifest, item, part_column));
-    size_t who = fg_manifest_word_index(&table->operators,
+        fg_manifest_word_index(&scans->parts, fg_manifest_cell(manifest, item, part_column));
+    size_t who = fg_manifest_word_index(&scans->operators,
                                         fg_manifest_cell(manifest, item, operator_column));
-    size_t cell = part * operators + who;
-    if (part >= parts || who >= operators) return false; /* an empty cell */
-    if (table->seen[cell] >= table->trials) return false;
-    table->foil[cell * table->trials + table->seen[cell]++] = analysis->foils[i].foil;
+    if (part >= scans->parts.count || who >= scans->operators.count) continue;
+    scans->foil[scans->count] = analysis->foils[i].foil;
+    scans->at[scans->count++] = (fg_gauge_trial){.part = part, .who = who};
   }
-  for (size_t i = 0; i < parts * operators; i++)
-    if (table->seen[i] != table->trials) return false;
-  return true;
+}
+
+/* Counts the scans of each cell; returns the largest count. */
+static size_t count_trials(gauge_scans *scans, size_t count) {
+  size_t max = 0, operators = scans->operators.count;
+  memset(scans->seen, 0, scans->parts.count * operators * sizeof *scans->seen);
+  for (size_t i = 0; i < count; i++) {
+    size_t seen = ++scans->seen[scans->known[i].part * operators + scans->known[i].who];
+    max = seen > max ? seen : max;
+  }
+  return max;
+}
+
+/* Orders the values of a complete study. */
+static void order_values(gauge_scans *scans, size_t count, size_t trials) {
+  memset(scans->seen, 0, scans->parts.count * scans->operators.count * sizeof *scans->seen);
+  for (size_t i = 0; i < count; i++) {
+    size_t cell = scans->known[i].part * scans->operators.count + scans->known[i].who;
+    scans->table[cell * trials + scans->seen[cell]++] = scans->known[i].value;
+  }
+}
+
+/* Sets *known where the values make a study: all of it, or with some missing. */
+static fg_status compute_study(fg_context *ctx, gauge_scans *scans, size_t count,
+                               fg_gauge_study *study, bool *known) {
+  size_t parts = scans->parts.count, operators = scans->operators.count;
+  size_t trials = count_trials(scans, count), whole = parts * operators * trials;
+  fg_context ignored = {0};
+  *known = trials >= 2 && (double)count >= FILLED_MIN * (double)whole;
+  if (!*known) return FG_OK;
+  if (count == whole) {
+    order_values(scans, count, trials);
+    return fg_gauge_study_compute(ctx, scans->table, parts, operators, trials, study);
+  }
+  fg_status status = fg_gauge_study_uneven(&ignored, scans->known, count, study);
+  *known = status == FG_OK;
+  return status == FG_ERR_DATA ? FG_OK : status;
 }
 
 static double value_of_number(const fg_lot_quantity *quantity, const fg_foil *foil, int number) {
@@ -64,55 +87,56 @@ static double value_of_number(const fg_lot_quantity *quantity, const fg_foil *fo
   return NAN;
 }
 
-static fg_status study_number(fg_context *ctx, fg_lot_analysis *analysis, const gauge_table *table,
-                              const fg_lot_quantity *quantity, int number, double *values) {
+static fg_status study_number(fg_context *ctx, fg_lot_analysis *analysis, gauge_scans *scans,
+                              const fg_lot_quantity *quantity, int number) {
   fg_lot_gauge gauge = {.quantity = quantity, .number = number};
-  size_t count = table->parts.count * table->operators.count * table->trials;
-  for (size_t i = 0; i < count; i++) {
-    values[i] = value_of_number(quantity, table->foil[i], number);
-    if (!isfinite(values[i])) return FG_OK;
+  size_t count = 0;
+  bool known;
+  for (size_t i = 0; i < scans->count; i++) {
+    double value = value_of_number(quantity, scans->foil[i], number);
+    if (!isfinite(value)) continue;
+    scans->known[count] = scans->at[i];
+    scans->known[count++].value = value;
   }
-  FG_TRY(fg_gauge_study_compute(ctx, values, table->parts.count, table->operators.count,
-                                table->trials, &gauge.study));
+  FG_TRY(compute_study(ctx, scans, count, &gauge.study, &known));
+  if (!known) return FG_OK;
   FG_TRY(fg_memory_reserve(ctx, analysis->gauge_count + 1, sizeof *analysis->gauges,
                            &analysis->gauge_capacity, (void **)&analysis->gauges));
   analysis->gauges[analysis->gauge_count++] = gauge;
   return FG_OK;
 }
 
-static fg_status study_quantities(fg_context *ctx, fg_lot_analysis *analysis,
-                                  const gauge_table *table, double *values) {
+static fg_status study_quantities(fg_context *ctx, fg_lot_analysis *analysis, gauge_scans *scans) {
   for (size_t q = 0; q < analysis->quantity_count; q++) {
     const fg_lot_quantity *quantity = &analysis->quantities[q];
     int parts = (int)quantity->places;
     for (int number = parts ? 1 : 0; number <= parts; number++)
-      FG_TRY(study_number(ctx, analysis, table, quantity, number, values));
+      FG_TRY(study_number(ctx, analysis, scans, quantity, number));
   }
   return FG_OK;
 }
 
-static fg_status run_gauge_study(fg_context *ctx, fg_lot_analysis *analysis, gauge_table *table,
+static fg_status run_gauge_study(fg_context *ctx, fg_lot_analysis *analysis, gauge_scans *scans,
                                  size_t part_column, size_t operator_column) {
-  void *values = NULL, *block;
+  size_t foils = analysis->foil_count;
   fg_status status = FG_OK;
-  fg_lot_list_words(analysis, part_column, &table->parts);
-  fg_lot_list_words(analysis, operator_column, &table->operators);
-  table->trials = count_trials(analysis, part_column, operator_column);
-  size_t cells = table->parts.count * table->operators.count;
-  if (table->parts.count < 2 || table->operators.count < 2 || table->trials < 2 ||
-      cells * table->trials != analysis->foil_count)
-    return FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, cells, sizeof *table->seen, &block));
-  table->seen = block;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof *table->foil, &block));
-  table->foil = block;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, analysis->foil_count, sizeof(double), &values));
-  if (fill_gauge_table(analysis, table, part_column, operator_column))
-    FG_TRY_EXIT(study_quantities(ctx, analysis, table, values));
+  fg_lot_list_words(analysis, part_column, &scans->parts);
+  fg_lot_list_words(analysis, operator_column, &scans->operators);
+  size_t cells = scans->parts.count * scans->operators.count;
+  if (scans->parts.count < 2 || scans->operators.count < 2) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, cells, sizeof *scans->seen, (void **)&scans->seen));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *scans->foil, (void **)&scans->foil));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *scans->at, (void **)&scans->at));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *scans->known, (void **)&scans->known));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foils, sizeof *scans->table, (void **)&scans->table));
+  list_scans(analysis, part_column, operator_column, scans);
+  FG_TRY_EXIT(study_quantities(ctx, analysis, scans));
 exit:
-  free(values);
-  free(table->seen);
-  free(table->foil);
+  free(scans->seen);
+  free(scans->foil);
+  free(scans->at);
+  free(scans->known);
+  free(scans->table);
   return status;
 }
 
@@ -122,7 +146,7 @@ fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t who = fg_manifest_column(&lot->manifest, lot->settings.operator_column);
   void *block;
   if (part == FG_NO_COLUMN || who == FG_NO_COLUMN) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, 1, sizeof(gauge_table), &block));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof(gauge_scans), &block));
   fg_status status = run_gauge_study(ctx, analysis, block, part, who);
   free(block);
   return status;

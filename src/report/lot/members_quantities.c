@@ -385,7 +385,7 @@ static const fg_member gauge_rows[] = {
      .page = {.rank = 2, .heading = "beam"}, .column = fg_lot_has_beams},
     {FG_COUNT("parts", fg_lot_gauge, study.parts)},
     {FG_COUNT("operators", fg_lot_gauge, study.operators)},
-    {FG_COUNT("trials", fg_lot_gauge, study.trials), .words = "of each operator at each part"},
+    {FG_COUNT("trials", fg_lot_gauge, study.trials), .words = "of each operator at each part, at most"},
     GAUGE_SD(repeatability, "repeatability", "standard deviation of one operator's trials"),
     GAUGE_SD(reproducibility, "reproducibility", "standard deviation of the operators"),
     GAUGE_SD(grr, "GRR", "standard deviation of both together"),

@@ -2,8 +2,10 @@
 /* The lot's page: its first screen with verdict and process, counts, the worst three, and one
  * chart. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "core/spread.h"
 #include "core/text.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/foil_kind.h"
@@ -33,9 +35,49 @@ static bool foils_are_judged(const fg_lot_analysis *analysis) {
   return design->tolerance_count > fg_report_of_bearing(design, NULL, 0);
 }
 
+/* A foil lies far from the others beyond FAR_SD robust standard deviations and FAR_SHARE of their
+ * median bump radius: foils of one product scatter by less than a tenth of that share. */
+#define FAR_SD    8.0
+#define FAR_SHARE 0.03
+enum { FAR_FOILS_MIN = 5 };
+
+static double mean_bump_radius(const fg_foil *foil) {
+  double sum = 0;
+  size_t count = 0;
+  for (size_t k = 0; fg_foil_is_measured(foil) && k < foil->bump_count; k++) {
+    if (!fg_lot_bump_counts(foil, &foil->bumps[k])) continue;
+    sum += foil->bumps[k].radius_mm;
+    count++;
+  }
+  return count ? sum / (double)count : NAN;
+}
+
+/* Counts the foils far from the others, which may be of another product. */
+static size_t count_far_foils(const fg_lot_analysis *analysis) {
+  size_t foils = 0, far = 0;
+  double *radius = malloc((analysis->foil_count + 1) * sizeof *radius);
+  double *work = malloc((analysis->foil_count + 1) * sizeof *work);
+  for (size_t i = 0; radius && work && i < analysis->foil_count; i++) {
+    double mean = mean_bump_radius(analysis->foils[i].foil);
+    if (isfinite(mean)) radius[foils++] = mean;
+  }
+  if (foils >= FAR_FOILS_MIN) {
+    memcpy(work, radius, foils * sizeof *work);
+    double median = fg_median(work, foils);
+    for (size_t i = 0; i < foils; i++)
+      work[i] = fabs(radius[i] - median);
+    double limit = fmax(FAR_SD * fg_robust_sd(work, foils), FAR_SHARE * median);
+    for (size_t i = 0; i < foils; i++)
+      far += fabs(radius[i] - median) > limit;
+  }
+  free(radius);
+  free(work);
+  return far;
+}
+
 static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
-  size_t repeats = analysis->repeated_scans;
+  size_t repeats = analysis->repeated_scans, far = count_far_foils(analysis);
   bool parts = !fg_foil_traits_of(analysis->lot->settings.design.kind)->is_plain_strip;
   const fg_lot_words *words = fg_lot_words_of(analysis);
   const fg_tile tiles[] = {
@@ -47,6 +89,8 @@ static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
       make_count_tile(analysis->scanned_again ? "Different foils" : NULL,
                       analysis->foil_count - analysis->scanned_again, FG_TILE_PLAIN,
                       "the others are further scans of them"),
+      make_count_tile(far ? "Foils far from the others" : NULL, far, FG_TILE_OPEN,
+                      "of another product? They are in all statistics of this page"),
       make_count_tile(parts ? words->counted : NULL, analysis->part_count, FG_TILE_PLAIN, ""),
       make_count_tile(parts && analysis->left_out ? words->damaged : NULL, analysis->left_out,
                       FG_TILE_OPEN, "judged, but in no statistics of this page"),

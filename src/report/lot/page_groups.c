@@ -110,8 +110,8 @@ static void put_no_gauge(FILE *out, const fg_lot_analysis *analysis) {
   if (parts.count < 2 || operators.count < 2) return;
   fprintf(out,
           "<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n"
-          "<p class=\"note\">Not stated: it takes every foil by every operator, equally often and "
-          "at least twice, each with all its values. Here are %zu measured scans of %zu foils by "
+          "<p class=\"note\">Not stated: it takes every foil by every operator at least twice, and "
+          "three quarters of these scans. Here are %zu measured scans of %zu foils by "
           "%zu operators.</p>\n</section>\n",
           analysis->foil_count, parts.count, operators.count);
 }

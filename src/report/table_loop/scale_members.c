@@ -17,7 +17,7 @@ static const fg_member scale_rows[] = {
     {FG_NUMBER("chosen_power", fg_loop_response_scale, chosen),
      .words = "the simplest in the interval"},
     {FG_COUNT("removes", fg_loop_response_scale, removes),
-     .words = "claims of scatter and interaction that do not show on that scale"},
+     .words = "claims of scatter, interaction and wrong rows that do not show on that scale"},
     {FG_TEXT_BY("words", find_scale_words), .options = FG_MEMBER_NEVER_NULL},
 };
 const fg_members fg_loop_scale_members = FG_MEMBERS(scale_rows);
