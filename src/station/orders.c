@@ -65,9 +65,10 @@ fg_status fg_order_read_open(fg_context *ctx, sqlite3 *connection, fg_order *ord
 
 /* ---- files of an ERP ---- */
 
-static void cell_text(const fg_column *column, size_t row, char text[FG_NAMED_TEXT]) {
+/* Returns a cell, whole; "" where it is missing. */
+static const char *cell_text(const fg_column *column, size_t row) {
   bool missing = !column->word || column->word[row] == FG_TABLE_MISSING;
-  fg_text_clip(text, FG_NAMED_TEXT, "%s", missing ? "" : column->words[column->word[row]]);
+  return missing ? "" : column->words[column->word[row]];
 }
 
 static const fg_column *find_order_column(const fg_table *table, const char *name,
@@ -87,10 +88,9 @@ static const char *without_zeros(const char *number) {
  * differs in leading zeros. table->rows: there is none. */
 static size_t find_order_row(const fg_table *table, const char *number) {
   const fg_column *numbers = find_order_column(table, columns[0].name, columns[0].other);
-  char text[FG_NAMED_TEXT];
   size_t found = table->rows;
   for (size_t row = table->rows; numbers && row-- > 0;) {
-    cell_text(numbers, row, text);
+    const char *text = cell_text(numbers, row);
     if (!strcmp(text, number)) return row;
     if (found == table->rows && text[0] && !strcmp(without_zeros(text), without_zeros(number)))
       found = row;
@@ -100,13 +100,13 @@ static size_t find_order_row(const fg_table *table, const char *number) {
 
 static void read_order_cells(const fg_table *table, size_t row, fg_order *order) {
   const fg_column *pieces = find_order_column(table, "pieces", "quantity");
-  char text[FG_NAMED_TEXT];
   *order = (fg_order){0};
   for (size_t i = 0; i < COLUMNS; i++) {
     const fg_column *column = find_order_column(table, columns[i].name, columns[i].other);
-    if (column) cell_text(column, row, (char *)order + columns[i].offset);
+    const char *text = column ? cell_text(column, row) : "";
+    fg_named_keep((char *)order + columns[i].offset, text, strlen(text));
   }
-  if (pieces) cell_text(pieces, row, text), order->pieces = strtoll(text, NULL, 10);
+  if (pieces) order->pieces = strtoll(cell_text(pieces, row), NULL, 10);
 }
 
 static fg_status find_in_order_file(fg_context *ctx, const char *path, const char *number,
