@@ -96,6 +96,8 @@ static const char doc[] =
     "    --html die.html\n"
     "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt \\\n"
     "    --half convex b1.txt\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_judged@";
 
 static void keep_status(die_run *run, fg_status status) {

@@ -99,6 +99,8 @@ static const char doc[] =
     "  foilgauge lot scans_b -o lot_b --expected next.json\n"
     "  foilgauge die --target my_foil.json --prior lot_b/expected.json \\\n"
     "    --html next.html\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_done@";
 
 static void add_next_lot(next_run *run, const char *folder, struct argp_state *state) {

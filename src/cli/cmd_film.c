@@ -170,6 +170,8 @@ static const char doc[] =
     "  foilgauge film --load 5 --speed 60000 --foils bearing.json -o film.json\n"
     "  foilgauge film --load 5 --speed 60000 --clearance 80 --shims=-7:7 \\\n"
     "    --draws 1000\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_partly@";
 
 /* Two or three numbers by a mark; returns how many. */

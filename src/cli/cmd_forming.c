@@ -112,6 +112,8 @@ static const char doc[] =
     "whether the pressure closes it, bumps that differ by their place; with its bumps the "
     "classical foil closes where measured ones open. A pressure on both faces is "
     "hydrostatic in plane strain: it neither yields nor creeps.\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_done@";
 
 static void parse_free(struct argp_state *state, forming_run *run, const char *text) {

@@ -149,8 +149,9 @@ static const char doc[] =
     "do next.\n\n"
     "Columns that the model does not use are candidates, and so are the order of the runs and the "
     "bump's number. DATA.csv has commas, semicolons or tabs between the cells, decimal points or "
-    "(not between commas) decimal commas. Without -o a table is printed on a terminal and JSON "
-    "elsewhere.\n\n"
+    "(not between commas) decimal commas.\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_loop@";
 
 /* COLUMN=P; the text, which argp owns, is cut at its last equals sign. */

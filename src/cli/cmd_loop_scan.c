@@ -117,6 +117,8 @@ static const char doc[] =
     "With --table DATA.csv the loop is closed on a table, with --lot DIR on what a lot measured, "
     "with "
     "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table --help`.\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_partly@";
 
 static void add_scan(struct argp_state *state, const char *path, bool held_out) {

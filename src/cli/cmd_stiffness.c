@@ -140,6 +140,8 @@ static const char doc[] =
     "  foilgauge stiffness --bearing B1 b1.csv --bearing B2 b2.csv --lot lot1 \\\n"
     "    --table-out t.csv\n"
     "  foilgauge loop --table t.csv --response difference_um --model 1\n\n"
+    "On a terminal the results are printed as a table; elsewhere, where no file is asked for, as "
+    "JSON.\n\n"
     "@exit_judged@";
 
 static void keep_status(stiffness_run *run, fg_status status) {

@@ -280,8 +280,11 @@ static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, si
 fg_status fg_file_open(fg_context *ctx, const char *path, FILE **stream) {
   *stream = fopen(path, "rbe");
   if (*stream) return FG_OK;
+  const char *advice = errno == ENOMEM   ? "close other programs"
+                       : errno == EACCES ? "ask for permission to read it"
+                                         : "check the name";
   return fg_fail(ctx, fg_status_of_errno(errno), "%.600s: cannot be opened: %s; %s", path,
-                 strerror(errno), errno == ENOMEM ? "close other programs" : "check the name");
+                 strerror(errno), advice);
 }
 
 fg_status fg_file_open_to_append(fg_context *ctx, const char *path, FILE **stream) {

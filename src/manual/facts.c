@@ -8,6 +8,7 @@
 #include "foilgauge/control.h"
 #include "foilgauge/picture.h"
 #include "foilgauge/quantity.h"
+#include "lot/statistics/analysis.h"
 #include "scan/format.h"
 
 static void write_commands(FILE *out) {
@@ -101,6 +102,10 @@ static void write_picture_members(FILE *out) {
             member->unit);
 }
 
+static void write_lot_chart_level(FILE *out) {
+  fputs(FG_LOT_CHART_LEVEL_TEXT, out);
+}
+
 static const fg_fact facts[] = {
     {"quantities_of_bump", write_quantities_of_bump},
     {"quantities_of_beam", write_quantities_of_beam},
@@ -115,6 +120,7 @@ static const fg_fact facts[] = {
     {"picture_members", write_picture_members},
     {"commands", write_commands},
     {"exit_codes", write_exit_codes},
+    {"lot_chart_level", write_lot_chart_level},
     {"scan_endings", write_endings},
 };
 

@@ -2,6 +2,7 @@
 #include "page/plot.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "page/page.h"
@@ -37,7 +38,7 @@ void fg_plot_end(const fg_plot *at) {
 }
 
 /* Decimals are those that neighbouring ticks need to differ, the same for all: 20.7299, 20.7300. */
-static void tick_text(char text[32], double value, double step) {
+static void size_text(char text[32], double value, double step) {
   enum { MIN_DIGITS = 4, MAX_DIGITS = 9, DECIMALS_MAX = 6 };
   double size = fabs(value), decimals = fmax(0, ceil(-log10(step) - 1e-9));
   if (decimals <= DECIMALS_MAX && size < 1e6) {
@@ -50,6 +51,13 @@ static void tick_text(char text[32], double value, double step) {
   snprintf(text, 32, "%.*g", digits, clean);
 }
 
+static void tick_text(char text[40], double value, double step) {
+  char size[32];
+  bool negative = value < 0 && fabs(value) >= step * 1e-6;
+  size_text(size, fabs(value), step);
+  snprintf(text, 40, "%s%s", negative ? "−" : "", size);
+}
+
 /* Returns the ticks' letter size in px, smaller where the longest would reach into the title; 0:
  * the style's size. */
 static double tick_size(const fg_plot *at, double step) {
@@ -57,9 +65,10 @@ static double tick_size(const fg_plot *at, double step) {
                title_px = 22; /* of a digit of that size; of the title */
   size_t longest = 1;
   for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
-    char number[32];
+    char number[40];
     tick_text(number, y, step);
-    if (strlen(number) > longest) longest = strlen(number);
+    size_t letters = strlen(number) - (y < 0 ? strlen("−") - 1 : 0);
+    if (letters > longest && letters < sizeof number) longest = letters;
   }
   double room = at->left - 8 - title_px, share = room / (wide_px * (double)longest);
   return share < 1 ? fmax(9, size_px * share) : 0;
@@ -70,7 +79,7 @@ void fg_plot_y_axis(const fg_plot *at, const char *title) {
   char size[40] = "";
   if (size_px > 0) snprintf(size, sizeof size, " style=\"font-size:%.1fpx\"", size_px);
   for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
-    char number[32];
+    char number[40];
     double clean = fabs(y) < step * 1e-6 ? 0 : y;
     tick_text(number, clean, step);
     fprintf(at->out,
@@ -98,7 +107,7 @@ void fg_plot_x_number(const fg_plot *plot, int number) {
 }
 
 static void put_x_numbers(const fg_plot *at, double step) {
-  char text[32];
+  char text[40];
   for (double x = ceil(at->x_low / step) * step; x <= at->x_high + step * 1e-6; x += step) {
     tick_text(text, x, step);
     fg_plot_x_label(at, fg_plot_x(at, x), text);

@@ -113,14 +113,19 @@ static void put_traceability(FILE *out, const fg_design *design) {
   fputs("</dd>\n", out);
 }
 
-fg_status fg_html_provenance(fg_context *ctx, FILE *out, const fg_provenance *p) {
+static void put_dates(FILE *out, const fg_provenance *p) {
   fputs("<dt>Date</dt><dd>", out);
   fg_html_text(out, p->first[0] ? p->first : "not known");
   if (strcmp(p->first, p->last) != 0) {
     fputs(" to ", out);
     fg_html_text(out, p->last);
   }
-  fputs("</dd>\n<dt>Program</dt><dd>foilgauge ", out);
+  fputs("</dd>\n", out);
+}
+
+fg_status fg_html_provenance(fg_context *ctx, FILE *out, const fg_provenance *p) {
+  if (p->first[0] || p->of_scans) put_dates(out, p);
+  fputs("<dt>Program</dt><dd>foilgauge ", out);
   fg_html_text(out, p->version ? p->version : FOILGAUGE_VERSION);
   fputs("</dd>\n", out);
   FG_TRY(put_design(ctx, out, p->design, p->design_words));
@@ -137,7 +142,7 @@ fg_status fg_html_provenance(fg_context *ctx, FILE *out, const fg_provenance *p)
 }
 
 fg_status fg_html_provenance_section(fg_context *ctx, FILE *out, const fg_provenance *provenance) {
-  fputs("<section>\n<h2>Where it comes from</h2>\n<dl class=\"facts\">\n", out);
+  fputs("<section>\n<h2 class=\"first\">Where it comes from</h2>\n<dl class=\"facts\">\n", out);
   FG_TRY(fg_html_provenance(ctx, out, provenance));
   fputs("</dl>\n</section>\n", out);
   return FG_OK;

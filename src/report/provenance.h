@@ -13,7 +13,8 @@
 struct fg_scanner_model;
 
 typedef struct fg_provenance {
-  char first[FG_DATE_TEXT], last[FG_DATE_TEXT]; /* dates of the inputs; "": not known */
+  /* Dates of the inputs. "": not known; without scans, as of a film of a design, no row then. */
+  char first[FG_DATE_TEXT], last[FG_DATE_TEXT];
   const char *version;                          /* of the program that measured; NULL: this one */
   const fg_design *design;                      /* NULL: none, or these words */
   const char *design_words;

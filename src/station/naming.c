@@ -77,11 +77,9 @@ static bool copy_plain(char *to, size_t size, const char *text, size_t length) {
   return whole;
 }
 
-/* The name of a file is any bytes of any length, that of a foil is a text. Where they differ, eight
- * digits of the bytes' sum keep foils apart that would have one name. */
-static void keep_field(fg_named *named, size_t field, const char *text, size_t length) {
+void fg_named_keep(char to[FG_NAMED_TEXT], const char *text, size_t length) {
   enum { MARK_BYTES = 9 };
-  char *to = (char *)named + fields[field].offset, hex[65];
+  char hex[65];
   struct sha256_ctx sum;
   if (copy_plain(to, FG_NAMED_TEXT, text, length)) return;
   copy_plain(to, FG_NAMED_TEXT - MARK_BYTES, text, length);
@@ -89,6 +87,10 @@ static void keep_field(fg_named *named, size_t field, const char *text, size_t l
   sha256_update(&sum, length, (const uint8_t *)text);
   fg_sha256_finish(&sum, hex);
   sprintf(to + strlen(to), "~%.8s", hex);
+}
+
+static void keep_field(fg_named *named, size_t field, const char *text, size_t length) {
+  fg_named_keep((char *)named + fields[field].offset, text, length);
 }
 
 /* One step of a pattern: an open place (a field or `*`, FIELDS) and the text behind it; `first` has

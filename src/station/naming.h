@@ -4,6 +4,7 @@
 #define FG_STATION_NAMING_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "foilgauge/status.h"
 
@@ -15,6 +16,10 @@ typedef struct fg_named {
   char coil[FG_NAMED_TEXT], oven[FG_NAMED_TEXT], scanner[FG_NAMED_TEXT];
   char check[FG_NAMED_TEXT]; /* not "": the scan is one of the scanner's check */
 } fg_named;
+
+/* Keeps bytes of any length, of a file's name or an ERP's cell, as a text. Where that differs, being
+ * cut or having bytes replaced, eight digits of the bytes' sum keep apart what would have one name. */
+void fg_named_keep(char to[FG_NAMED_TEXT], const char *text, size_t length);
 
 /* Checks a pattern. FG_ERR_DATA: an unknown field, an open brace, two fields without text
  * between them, a field twice. */

@@ -66,7 +66,7 @@ fg_status fg_order_read_open(fg_context *ctx, sqlite3 *connection, fg_order *ord
 
 /* ---- files of an ERP ---- */
 
-/* Returns a cell as it is; "" for a missing one. */
+/* Returns a cell, whole; "" where it is missing. */
 static const char *get_order_cell(const fg_column *column, size_t row) {
   bool missing = !column->word || column->word[row] == FG_TABLE_MISSING;
   return missing ? "" : column->words[column->word[row]];
@@ -99,22 +99,15 @@ static size_t find_order_row(const fg_table *table, const char *number) {
   return found;
 }
 
-/* Text that is too long is refused, not cut: a shorter one could be the name of another lot. */
-static fg_status read_order_cells(fg_context *ctx, const char *path, const fg_table *table,
-                                  size_t row, fg_order *order) {
+static void read_order_cells(const fg_table *table, size_t row, fg_order *order) {
   const fg_column *pieces = find_order_column(table, "pieces", "quantity");
   *order = (fg_order){0};
   for (size_t i = 0; i < COLUMNS; i++) {
     const fg_column *column = find_order_column(table, columns[i].name, columns[i].other);
     const char *text = column ? get_order_cell(column, row) : "";
-    if (strlen(text) >= FG_NAMED_TEXT)
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: row %zu, column '%s': a text of %zu bytes; at most %d can be kept", path,
-                     row + 1, column->name, strlen(text), FG_NAMED_TEXT - 1);
-    strcpy((char *)order + columns[i].offset, text);
+    fg_named_keep((char *)order + columns[i].offset, text, strlen(text));
   }
   if (pieces) order->pieces = strtoll(get_order_cell(pieces, row), NULL, 10);
-  return FG_OK;
 }
 
 static fg_status find_in_order_file(fg_context *ctx, const char *path, const char *number,
@@ -123,9 +116,9 @@ static fg_status find_in_order_file(fg_context *ctx, const char *path, const cha
   char sum[65];
   FG_TRY(fg_table_load_words(ctx, path, &table, sum));
   size_t row = find_order_row(&table, number);
-  fg_status status = row < table.rows ? read_order_cells(ctx, path, &table, row, order) : FG_OK;
+  if (row < table.rows) read_order_cells(&table, row, order);
   fg_table_free(&table);
-  return status;
+  return FG_OK;
 }
 
 /* True for the file of two that an ERP wrote last. */

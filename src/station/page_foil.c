@@ -50,7 +50,7 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, const fg_stored
 
 static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE *out) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n", out);
-  write_fact(out, "Scan", stored->path);
+  write_fact(out, "Scan file", stored->path);
   fprintf(out, "<dt>From</dt><dd>%s</dd>\n",
           !strcmp(stored->source, "scanner") ? "the Scan button" : "the folder");
   write_fact(out, "Lot", stored->lot);

@@ -100,7 +100,7 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_sto
 }
 
 static fg_status write_facts(fg_context *ctx, const fg_stored_foil *stored, FILE *out) {
-  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
+  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan file</dt><dd>", out);
   fg_html_name(out, stored->path);
   fputs("</dd>\n<dt>Measured</dt><dd>", out);
   fg_page_time(out, stored->at);

@@ -117,6 +117,16 @@ expect 64 'dpi' "$program" measure --dpi nan "$scan"
 expect 64 'form' "$program" measure --form round "$scan"
 expect 64 'two outputs' "$program" measure "$scan" -o "$out/a" --csv "$out/a"
 expect 64 'one scan' "$program" measure "$scan" "$scan" --overlay "$out/a.png"
+# A narrow scan: the legend below it is whole, and the words of the residuals' scale stand in two rows.
+echo '{"schema": "foilgauge/render/1", "scanner": {"dpi": 600}, "foils": [{"rotate_deg": 0, "design": {"bump_count": 2}}]}' >"$folder/narrow.json"
+echo '{"schema": "foilgauge/design/1", "bump_count": 2}' >"$folder/two.json"
+"$renderer" render "$folder/narrow.json" -o "$folder/narrow.png" || fail "render"
+expect 0 '' "$program" measure "$folder/narrow.png" -d "$folder/two.json" --overlay "$out/a.png" --html "$out/a.html" -o "$out/a.json"
+width=$((16#$(od -An -tx1 -j16 -N4 "$out/a.png" | tr -d ' ')))
+[ "$width" -ge 944 ] || fail "a legend of $width px is cut"
+grep -q '>(drawn × ' "$out/a.html" || fail "the scale's words of a narrow picture stand in one row"
+only a.html a.json a.png
+
 cp "$scan" "$folder/scan.png"
 expect 64 'overwrite' "$program" measure "$folder/scan.png" -o "$folder/./scan.png"
 cmp -s "$scan" "$folder/scan.png" || fail "the scan was overwritten"

@@ -40,6 +40,15 @@ echo '{"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_m
 "$program" measure "$work/colour.png" --html "$work/colour.html" -o "$work/out.json" 2>"$work/said" || fail "colour: $(cat "$work/said")"
 "$program" measure "$work/1.png" --gauge leaf:0.1:0.0005 --html "$work/gauge.html" -o "$work/out.json" 2>"$work/said" || fail "gauge: $(cat "$work/said")"
 "$program" measure "$work/1.png" --model "$work/model.json" --html "$work/model.html" -o "$work/out.json" 2>"$work/said" || fail "model: $(cat "$work/said")"
+"$renderer" render "$(dirname "$0")/../../samples/render/cantilever.json" -o "$work/beams.png" || fail "render beams"
+"$program" measure "$work/beams.png" --design "$(dirname "$0")/../../samples/cantilever_design.json" --html "$work/beams.html" -o "$work/out.json" \
+  2>"$work/said" || fail "beams: $(cat "$work/said")"
+# Foils scanned again by two operators: a gauge study.
+for foil in 6 7; do for scan in 0 1 2 3; do radius $foil$scan 3.3$foil "$work/g$foil$scan.png"; done; done
+(echo scan,foil,operator; for foil in 6 7; do for scan in 0 1 2 3; do echo "g$foil$scan.png,$foil,$((scan / 2))"; done; done) >"$work/study.csv"
+echo '{"schema": "foilgauge/design/1", "bump_count": 2, "calibration": "flatbed"}' >"$work/study.json"
+"$program" lot "$work/study.csv" --design "$work/study.json" --pages none -o "$work/study" >"$work/said" 2>&1 || fail "study: $(cat "$work/said")"
+grep -q 'Gauge repeatability' "$work/study/index.html" || fail "no gauge study"
 "$program" lot "$work/1.png" "$work/2.png" --model "$work/model.json" --pages none -o "$work/lot" >"$work/said" 2>&1 || fail "lot: $(cat "$work/said")"
 start "$work/scans" $recipe
 checks - "$work" "$missing" >&2 <<'PY' || fail "languages"
@@ -137,7 +146,7 @@ assert table.startswith("\ufeff") and table[1:].splitlines()[0] == plain_table.s
 assert re.search(r";3,3[0-9]+;", table) or re.search(r";20,7[0-9]+;", table), table
 assert ask("/download", "de", dict(lot="7", file="results.dfq")) == ask("/download", "en", dict(lot="7", file="results.dfq"))
 # Reports of what these scans have not: colour lines, gauges, a scanner's model, a scale of which nothing is known; a lot of them.
-more = [work + "/" + name for name in ("colour.html", "gauge.html", "model.html", "lot/index.html")]
+more = [work + "/" + name for name in ("colour.html", "gauge.html", "model.html", "beams.html", "lot/index.html", "study/index.html")]
 said = subprocess.run([missing, "de"] + ["%s/pages/%03d.html" % (work, i) for i in range(len(kept))] + more, capture_output=True, text=True)
 assert said.returncode == 0, "no words in de.po: " + said.stdout + said.stderr
 print("languages: %d pages" % len(kept))

@@ -18,6 +18,8 @@ printf 'Order;Batch;Tool;Material;Quantity\n4711;L7;B;K7;40\n4712;L8;A;K8;2\n' >
 printf 'Order;Batch;Tool;Material;Quantity\n000815;old;B;K7;40\n1e3;L13;B;K7;4\n' >"$work/erp/a.csv"
 touch -d '1 hour ago' "$work/erp/a.csv"
 printf 'Order;Batch;Tool;Material;Quantity\n000815;00012;01;007;5\n4500012345678901234;1,5;B;K7;4\n' >"$work/erp/b.csv"
+long=$(printf 'campaign-%.0s' $(seq 20))
+printf 'Order;Batch;Tool\n61;%s1;B\n62;%s2;B\n' "$long" "$long" >"$work/erp/long.csv"
 printf 'not a table' >"$work/erp/readme.txt"
 cat >"$work/recipe.json" <<R
 {"schema": "foilgauge/recipe/1",
@@ -174,5 +176,11 @@ assert re.search(r"<h2>Newest orders</h2>\s*<ul[^>]*>\s*<li><b>4711</b>, lot L77
 post("/order", number="4711", lot="L78")
 post("/order", number="4711")
 assert row()[0] == "L78", row()
+
+# Lots whose names are longer than a field stay two lots.
+for number in "61", "62":
+    assert "/orders" not in post("/order", number=number)[0]
+lots = database.execute("SELECT lot FROM orders WHERE number IN ('61', '62') ORDER BY number").fetchall()
+assert len(set(lots)) == 2 and all(lot.startswith("campaign-") and len(lot) == 127 and lot[-9] == "~" for lot, in lots), lots
 print("orders: ERP, by hand, progress, Scan; dispositions; several recipes")
 PY

@@ -128,7 +128,7 @@ expect 74 "nowhere" once "$work/nowhere"
 if [ "$(id -u)" -eq 0 ]; then
   chmod 755 "$work" "$work/other"
   rm -f "$work"/other/foilgauge.sqlite*
-  expect 74 "cannot be opened: Permission denied" setpriv --reuid 65534 --clear-groups \
+  expect 74 "nothing can be written in this folder: Permission denied; results are kept in it: ask for permission" setpriv --reuid 65534 --clear-groups \
     "$(realpath "$program")" station "$work/other" --once
 fi
 

@@ -32,8 +32,10 @@ fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock) {
   fg_status status = FG_OK;
   *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (*lock < 0) {
-    status =
-        fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be opened: %s", path, strerror(errno));
+    status = fg_fail(ctx, fg_status_of_errno(errno),
+                     "%s: nothing can be written in this folder: %s; results are kept in it: ask "
+                     "for permission, or choose another",
+                     folder, strerror(errno));
   } else if (flock(*lock, LOCK_EX | LOCK_NB) != 0) {
     status = fg_fail(ctx, FG_ERR_IO,
                      "%s: another run is at work in this folder; wait for it, or choose another",

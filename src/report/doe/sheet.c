@@ -99,12 +99,12 @@ fg_status fg_plan_write_html(fg_context *ctx, const fg_plan *plan, const char *c
   fputs("</p></header>\n", out);
   FG_TRY(put_notes(ctx, out, plan));
   put_factors(out, plan);
-  fputs("<h2>Runs</h2>\n<table class=\"sheet\">", out);
+  fputs("<h2>Runs</h2>\n<div class=\"scroll\"><table class=\"sheet\">", out);
   put_heads(out, plan, column, columns);
   fputs("<tbody>\n", out);
   for (size_t i = 0; i < plan->runs; i++)
     put_run(out, plan, i, columns);
-  fputs("</tbody></table>\n<p class=\"note\">The order is random so that nothing that drifts "
+  fputs("</tbody></table></div>\n<p class=\"note\">The order is random so that nothing that drifts "
         "looks like an effect: a run that has to move gets a note. What was set instead goes into "
         "the table as it was set.</p>\n</section>\n",
         out);

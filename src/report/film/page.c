@@ -107,8 +107,8 @@ static void put_stability(FILE *out, const fg_film_report *r) {
   put_modes(out, r);
   fputs("<figure>", out);
   fg_film_plot_stability(out, r);
-  fputs("<figcaption>Critical mass over speed, under the same load; the dashed line is the "
-        "rotor's mass. The curve breaks off where the rotor passes to another "
+  fputs("<figcaption>Critical mass over speed, under the same load: heavier rotors whirl. Dashed: "
+        "the rotor's mass. The curve breaks off where the rotor passes to another "
         "film.</figcaption></figure>\n<figure>",
         out);
   fg_film_plot_coefficients(out, r, false);

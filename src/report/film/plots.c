@@ -156,13 +156,18 @@ void fg_film_plot_stability(FILE *out, const fg_film_report *r) {
   put_films(&at, r, speed, mass);
   for (size_t i = 0; i < r->speed_count; i++)
     if (isfinite(mass[i])) fg_plot_dot(&at, speed[i], mass[i], 4, "s1");
-  for (size_t i = 0; i < r->speed_count; i++)
-    if (r->by_speed[i].critical_mass_kg <= 0) fg_plot_dot(&at, speed[i], y[0], 4, "s3");
-  if (isfinite(r->threshold_rpm))
+  bool all_whirl = false;
+  for (size_t i = 0; i < r->speed_count; i++) {
+    if (!(r->by_speed[i].critical_mass_kg <= 0)) continue;
+    fg_plot_dot(&at, speed[i], y[0], 4, "s3");
+    all_whirl = true;
+  }
+  fg_plot_key(&at, 80, "s1", "critical mass");
+  if (isfinite(r->threshold_rpm)) {
     fg_plot_dot(&at, r->threshold_rpm / 1000, log10(r->options.rotor_mass_kg), 6, "s2");
-  fg_plot_key(&at, 80, "s1", "critical mass: heavier rotors whirl");
-  fg_plot_key(&at, 380, "s2", "threshold of this rotor");
-  fg_plot_key(&at, 600, "s3", "every rotor whirls");
+    fg_plot_key(&at, 300, "s2", "threshold of this rotor");
+  }
+  if (all_whirl) fg_plot_key(&at, 620, "s3", "every rotor whirls");
   fg_plot_end(&at);
 }
 

@@ -64,7 +64,7 @@ static void put_load_tiles(FILE *out, const fg_load_test *test, size_t bearing) 
       make_load_tile("Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
                      lower_bound ? "a lower bound" : ""),
       make_load_tile("Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload"),
-      {"Smallest along", .text = axis_known ? axis : "–",
+      {"Smallest clearance at", .text = axis_known ? axis : "–",
        .small = axis_known ? axis_u : fg_load_axis_words(b->axis)},
       make_load_tile(b->break_away.pulls ? "Preload" : NULL, &b->preload_kpa, 1, 2, "kPa", ""),
   };

@@ -360,6 +360,11 @@ static const char *find_gauge_words(const fg_subject *subject, char *buffer) {
   return gauge_of(subject)->quantity->row->words;
 }
 
+static const char *find_gauge_unit(const fg_subject *subject, char *buffer) {
+  (void)buffer;
+  return gauge_of(subject)->quantity->row->unit;
+}
+
 static double find_whole_categories(const fg_subject *subject) {
   return floor(gauge_of(subject)->study.distinct_categories);
 }
@@ -383,6 +388,8 @@ static const fg_member gauge_rows[] = {
     {FG_INTEGER("beam", fg_lot_gauge, number), .options = FG_MEMBER_NOT_NEGATIVE,
      .present = fg_lot_has_beams, .words = "of a cantilever, instead of bump",
      .page = {.rank = 2, .heading = "beam"}, .column = fg_lot_has_beams},
+    {FG_TEXT_BY("unit", find_gauge_unit), .options = FG_MEMBER_NOT_IN_JSON,
+     .page = {.rank = 2, .heading = "unit", .words = true}},
     {FG_COUNT("parts", fg_lot_gauge, study.parts)},
     {FG_COUNT("operators", fg_lot_gauge, study.operators)},
     {FG_COUNT("trials", fg_lot_gauge, study.trials), .words = "of each operator at each part, at most"},

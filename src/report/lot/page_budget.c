@@ -96,7 +96,7 @@ static void put_unexplained(FILE *out, const fg_lot_budget *budget) {
             "bump are known well enough for its stiffness within %.2g %%; the parts themselves "
             "vary by %.3g %%. ",
             budget->measurement_pct, budget->parts_pct);
-  fputs("What all scans share, the doubt about the thickness, is in the mean above and not in a "
+  fputs("What all scans share, the uncertainty of the thickness, is in the mean above and not in a "
         "spread.</p>\n",
         out);
 }

@@ -55,7 +55,9 @@ static void put_method(FILE *out, const fg_lot_analysis *analysis) {
 static void put_group_row(FILE *out, const fg_lot_analysis *analysis,
                           const fg_lot_difference *one) {
   const fg_comparison *c = &one->comparison;
-  fprintf(out, "<tr><td class=\"words\">%s</td><td class=\"words\">", one->quantity->row->words);
+  const fg_quantity *row = one->quantity->row;
+  fprintf(out, "<tr><td class=\"words\">%s%s%s</td><td class=\"words\">", row->words,
+          row->unit[0] ? ", " : "", row->unit);
   fg_html_name(out, one->a);
   fputs(" against ", out);
   fg_html_name(out, one->b);
@@ -92,6 +94,9 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
+/* Limits by which a gauge is accepted: AIAG, Measurement Systems Analysis, 4th edition. */
+enum { GRR_GOOD_PCT = 10, GRR_POOR_PCT = 30, CATEGORIES_MIN = 5 };
+
 static bool find_gauge(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_lot_analysis *analysis = list->whole;
   element->object = &analysis->gauges[i];
@@ -123,5 +128,11 @@ void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
   }
   fputs("<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n", out);
   fg_html_table(out, &fg_lot_gauge_members, &(fg_subject){.whole = analysis}, find_gauge);
-  fputs("</section>\n", out);
+  fprintf(out,
+          "<p class=\"note\">Standard deviations: of one operator's trials, of the operators, of "
+          "both together (GRR), of the parts. GRR, %%: of the total standard deviation; up to %d %% "
+          "is good, above %d %% is not fit for use (AIAG). Categories: classes of parts that the "
+          "gauge tells apart, %d or more are wanted. Both depend on how far the parts of this study "
+          "differ.</p>\n</section>\n",
+          GRR_GOOD_PCT, GRR_POOR_PCT, CATEGORIES_MIN);
 }

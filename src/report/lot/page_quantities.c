@@ -50,7 +50,7 @@ static void put_mean_u(FILE *out, const fg_lot_analysis *analysis) {
   fg_html_table(out, &fg_lot_quantity_members,
                 &(fg_subject){.whole = analysis, .index = FG_LOT_MEAN_U}, find_known);
   fputs("<p class=\"note\">What the scans&#39; statistics leave averages "
-        "out over the foils, but for the thickness, whose doubt they share; what the calibration "
+        "out over the foils, but for the thickness, whose uncertainty they share; what the calibration "
         "leaves is the same error in each, so no number "
         "of foils makes it smaller. Spreads, charts and differences of foils of one scanner are "
         "free of it.</p>\n",
@@ -199,6 +199,31 @@ static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</figcaption></figure>\n", out);
 }
 
+static void put_correlation(FILE *out, const fg_lot_correlation *line) {
+  fprintf(out,
+          "<figcaption>Dashed: constant arc length. Orange: least squares over %zu bumps (%zu "
+          "trimmed by their radius), slope ",
+          line->count - line->trimmed, line->trimmed);
+  fg_lot_put_decimals(out, line->slope, 3);
+  fputs(", r ", out);
+  fg_lot_put_decimals(out, line->r, 3);
+  fputs(". In logarithms, where a constant arc length is a slope of −1 exactly: ", out);
+  fg_lot_put_decimals(out, line->log_slope, 4);
+  if (isfinite(line->log_dof)) {
+    fputs(" (", out);
+    fg_lot_put_decimals(out, line->log_low, 4);
+    fputs(" … ", out);
+    fg_lot_put_decimals(out, line->log_high, 4);
+    fprintf(out, "; bumps of %zu foil%s, %.1f degrees of freedom)", line->foils,
+            fg_plural(line->foils), line->log_dof);
+  }
+  fprintf(out, ". Arc length against the design, all %zu bumps: ", line->count);
+  fg_lot_put_decimals(out, line->arc_length_mean_pct, 3);
+  fputs(" %, s ", out);
+  fg_lot_put_decimals(out, line->arc_length_sd_pct, 3);
+  fputs(" %.</figcaption></figure>\n", out);
+}
+
 void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_mm");
   fputs("<section class=\"part\">\n<h1>Springback</h1>\n<figure>", out);
@@ -208,21 +233,9 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
                       "radius over design");
   fputs("<figcaption>Histogram and kernel density.</figcaption></figure>\n", out);
   if (analysis->has_correlation) {
-    const fg_lot_correlation *line = &analysis->correlation;
     fputs("<h2>Angle against radius</h2>\n<figure>", out);
     fg_lot_plot_correlation(out, analysis);
-    fprintf(out,
-            "<figcaption>Dashed: constant arc length. Orange: least squares over %zu bumps (%zu "
-            "trimmed by their radius), slope %.3f, r %.3f. In logarithms, where a constant arc "
-            "length is a slope of −1 exactly: %.4f",
-            line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope);
-    if (isfinite(line->log_dof))
-      fprintf(out, " (%.4f … %.4f; bumps of %zu foil%s, %.1f degrees of freedom)", line->log_low,
-              line->log_high, line->foils, fg_plural(line->foils), line->log_dof);
-    fprintf(out,
-            ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
-            "</figcaption></figure>\n",
-            line->count, line->arc_length_mean_pct, line->arc_length_sd_pct);
+    put_correlation(out, &analysis->correlation);
   }
   fputs("</section>\n", out);
 }

@@ -249,11 +249,36 @@ static fg_status draw_disc(fg_context *ctx, fg_canvas *canvas, const fg_disc *di
   return fg_canvas_text(ctx, canvas, disc->centre_mm, 12, 0.5, FG_COLOUR_TEXT, number);
 }
 
+/* The residuals' scale: a bar of 1 mm and its words, beside it or, where the canvas is too narrow for
+ * that, in two rows below it. Units of the canvas. */
+typedef struct scale_layout {
+  bool is_narrow;
+  double letter_height;
+  double width, height;
+} scale_layout;
+
+static const double scale_margin = 30, scale_gap = 12, scale_row = 20;
+/* Widths of the words at full size, in the longer of the languages: in one row and in two. */
+static const double scale_words = 378, scale_half = 230;
+
+static scale_layout lay_out_scale(const fg_canvas *canvas) {
+  double bar = canvas->px_per_mm[0] / canvas->unit_px, room = canvas->width_px / canvas->unit_px;
+  scale_layout layout = {.letter_height = 11,
+                         .width = scale_margin + bar + scale_gap + scale_words,
+                         .height = 56};
+  if (layout.width <= room) return layout;
+  layout.is_narrow = true;
+  layout.letter_height *= fmin(1, fmax(0.2, (room - 2 * scale_margin) / scale_half));
+  layout.width = fmin(room, scale_margin + fmax(bar, scale_half));
+  layout.height += 2 * scale_row;
+  return layout;
+}
+
 /* Returns the box of the scale in a corner of the canvas: 0 is the lower left, 1 the lower
  * right, 2 the upper left, 3 the upper right. */
 static fg_drawing_box scale_box(const fg_canvas *canvas, int corner) {
-  const double size_px[2] = {30 * canvas->unit_px + canvas->px_per_mm[0] + 420 * canvas->unit_px,
-                             56 * canvas->unit_px};
+  scale_layout layout = lay_out_scale(canvas);
+  const double size_px[2] = {layout.width * canvas->unit_px, layout.height * canvas->unit_px};
   double x = corner % 2 ? fmax(0, canvas->width_px - size_px[0]) : 0;
   double y = corner < 2 ? canvas->height_px - size_px[1] : 0;
   fg_point low = {(x - canvas->origin_px[0]) / canvas->px_per_mm[0],
@@ -306,21 +331,38 @@ fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measuremen
   return best;
 }
 
+static fg_status draw_scale_words(fg_context *ctx, fg_canvas *canvas, const scale_layout *layout,
+                                  fg_point at, double magnification) {
+  double row_mm = scale_row * canvas->unit_px / canvas->px_per_mm[1];
+  char text[120];
+  if (!layout->is_narrow) {
+    snprintf(text, sizeof text, "1 mm; residual %.4g µm (drawn × %.0f)", 1000 / magnification,
+             magnification);
+    return fg_canvas_text(ctx, canvas, at, layout->letter_height, 0, FG_COLOUR_TEXT, text);
+  }
+  snprintf(text, sizeof text, "1 mm; residual %.4g µm", 1000 / magnification);
+  FG_TRY(fg_canvas_text(ctx, canvas, (fg_point){at.x, at.y + row_mm}, layout->letter_height, 0,
+                        FG_COLOUR_TEXT, text));
+  snprintf(text, sizeof text, "(drawn × %.0f)", magnification);
+  return fg_canvas_text(ctx, canvas, (fg_point){at.x, at.y + 2 * row_mm}, layout->letter_height, 0,
+                        FG_COLOUR_TEXT, text);
+}
+
 /* Draws a bar of 1 mm in the emptiest corner, with the residual that it stands for. */
 static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
                             double magnification) {
   double unit_mm = canvas->unit_px / canvas->px_per_mm[0];
+  scale_layout layout = lay_out_scale(canvas);
   fg_drawing_box box = fg_drawing_scale_box(canvas, measurement);
-  fg_point left = {box.low.x + 30 * unit_mm, (box.low.y + box.high.y) / 2};
-  fg_point right = {left.x + 1, left.y}, text_at = {right.x + 12 * unit_mm, left.y};
+  fg_point left = {box.low.x + scale_margin * unit_mm,
+                   box.low.y + 28 * canvas->unit_px / canvas->px_per_mm[1]};
+  fg_point right = {left.x + 1, left.y};
+  fg_point words_at = {layout.is_narrow ? left.x : right.x + scale_gap * unit_mm, left.y};
   const fg_point bar[3][2] = {{left, right},
                               {{left.x, left.y - 5 * unit_mm}, {left.x, left.y + 5 * unit_mm}},
                               {{right.x, right.y - 5 * unit_mm}, {right.x, right.y + 5 * unit_mm}}};
   FG_TRY(fg_canvas_segments(ctx, canvas, bar, 3, (fg_pen){FG_COLOUR_RESIDUAL, 2, 0}));
-  char text[120];
-  snprintf(text, sizeof text, "1 mm; residual %.4g µm (drawn × %.0f)", 1000 / magnification,
-           magnification);
-  return fg_canvas_text(ctx, canvas, text_at, 11, 0, FG_COLOUR_TEXT, text);
+  return draw_scale_words(ctx, canvas, &layout, words_at, magnification);
 }
 
 fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,

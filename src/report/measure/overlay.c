@@ -15,6 +15,8 @@
 
 enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = FG_OVERLAY_LINE };
 static const double pixels_max = 48e6;
+/* Capitals of the legend: as high as can be read, and the legend as wide as its widest row needs. */
+static const double em_min_px = 8, legend_width_em = 118;
 
 /* The legend: text in lines and columns under the picture. */
 struct fg_overlay_legend {
@@ -163,29 +165,33 @@ static fg_status draw_legend(fg_context *ctx, fg_overlay_legend *at,
   return put_text(ctx, at, 0, 0xa8b4c0, view->overlay_note);
 }
 
-/* The gray picture on top, a dark panel for the legend below. */
-static fg_status make_ground(fg_context *ctx, const fg_picture *picture, double panel_px,
-                             fg_rgb *rgb) {
-  size_t pixels = (size_t)picture->width * (size_t)picture->height;
+/* The gray picture on top, a dark panel for the legend below, which may be wider. */
+static fg_status make_ground(fg_context *ctx, const fg_picture *picture, double width_px,
+                             double panel_px, fg_rgb *rgb) {
+  size_t width = (size_t)picture->width, rows = (size_t)picture->height;
   void *block;
-  rgb->width = picture->width;
+  rgb->width = (int32_t)fmax(picture->width, ceil(width_px));
   rgb->height = picture->height + (int32_t)panel_px;
-  FG_TRY(fg_memory_allocate(ctx, (size_t)rgb->height, 3 * (size_t)rgb->width, &block));
+  size_t row_bytes = 3 * (size_t)rgb->width;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)rgb->height, row_bytes, &block));
   rgb->pixels = block;
-  for (size_t i = 0; i < pixels; i++)
-    memset(rgb->pixels + 3 * i, picture->gray[i], 3);
-  size_t panel = 3 * (size_t)rgb->width * (size_t)(rgb->height - picture->height);
-  memset(rgb->pixels + 3 * pixels, 0x16, panel);
+  memset(rgb->pixels, 0x16, (size_t)rgb->height * row_bytes);
+  for (size_t row = 0; row < rows; row++)
+    for (size_t i = 0; i < width; i++)
+      memset(rgb->pixels + row * row_bytes + 3 * i, picture->gray[row * width + i], 3);
   return FG_OK;
 }
 
 static fg_status draw_overlay(fg_context *ctx, const fg_measurement *measurement,
                               const fg_picture *picture, fg_rgb *rgb) {
-  double em_px = fmax(8, picture->width / 118.0);
-  FG_TRY(make_ground(ctx, picture, 2.0 * em_px * ((double)legend_lines(measurement) + 1), rgb));
+  double em_px = fmax(em_min_px, picture->width / legend_width_em);
+  FG_TRY(make_ground(ctx, picture, legend_width_em * em_px,
+                     2.0 * em_px * ((double)legend_lines(measurement) + 1), rgb));
   fg_canvas canvas = fg_canvas_over(picture, measurement);
-  fg_rgb upper = {rgb->pixels, picture->width, picture->height}; /* nothing reaches the legend */
+  fg_rgb upper = {rgb->pixels, rgb->width, picture->height}; /* nothing reaches the legend */
   canvas.rgb = &upper;
+  canvas.width_px = rgb->width;
+  canvas.unit_px = rgb->width / 1600.0;
   FG_TRY(fg_draw_measurement(ctx, &canvas, measurement, 0));
   fg_overlay_legend at = {rgb, 2 * em_px, picture->height + em_px, em_px, 0};
   return draw_legend(ctx, &at, measurement);

@@ -42,7 +42,7 @@ static void put_disc_findings(FILE *out, const fg_measurement *measurement) {
 
 static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
                            const fg_measurement *measurement) {
-  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
+  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan file</dt><dd>", out);
   fg_html_name(out, measurement->scan);
   fprintf(out, "</dd>\n<dt>Pixels</dt><dd>%lld × %lld, %d bit</dd>\n",
           (long long)measurement->width_px, (long long)measurement->height_px,

@@ -138,8 +138,9 @@ static fg_status append_kept(fg_context *ctx, const fg_scan_result *result, char
 }
 
 static fg_status write_chance_sentence(fg_context *ctx, double p, char **text) {
-  if (p < 1e-12) return fg_text_append(ctx, text, "Noise alone would do this with p < 10⁻¹².");
-  return fg_text_append(ctx, text, "Noise alone would do this with p = %.2g.", p);
+  if (p < 1e-12)
+    return fg_text_append(ctx, text, "Probability that noise alone looks like this: p < 10⁻¹².");
+  return fg_text_append(ctx, text, "Probability that noise alone looks like this: p = %.2g.", p);
 }
 
 static fg_status say_clean(fg_context *ctx, const fg_scan_result *result, char **text) {

@@ -102,10 +102,9 @@ static void put_residual_tests(FILE *out, const fg_loop_report *report) {
   fputs("<section><h2>Is what is left only noise?</h2>", out);
   fg_html_table(out, &fg_loop_check_members, &(fg_subject){report, report, 0}, fg_loop_find_check);
   fprintf(out,
-          "<p class=\"soft\">No: p below %.2g. Not sure: p up to 0.1. What "
-          "was looked for by name "
-          "(neighbours that are alike, cycles, scatter that changes, lone values and more) is "
-          "listed below.</p></section>\n",
+          "<p class=\"soft\">No: p below %.2g. Not sure: p up to 0.1. Effects that were looked for by "
+          "name (serial correlation, cycles, changing scatter, outliers and more) are listed "
+          "below.</p></section>\n",
           level);
 }
 
