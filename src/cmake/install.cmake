@@ -26,7 +26,8 @@ int main(void) { return 0; }" OBJECTS_FOR_ANY_ADDRESS)
 if(OBJECTS_FOR_ANY_ADDRESS)
   set_source_files_properties(
     src/forming/search.c src/geometry/circle_fit.c src/geometry/circle_levenberg.c src/geometry/roundness.c
-    src/process/experiment_order.c src/process/experiment_simultaneous.c src/scan_loop/scanner_change.c src/station/scan_command.c src/stats/table_load.c
+    src/process/experiment_order.c src/process/experiment_simultaneous.c src/scan_loop/scanner_change.c src/station/scan_command.c
+    src/stats/gauge_uneven.c src/stats/table_load.c
     PROPERTIES COMPILE_OPTIONS -fPIC)
 else()
   set_target_properties(foilgauge_static PROPERTIES POSITION_INDEPENDENT_CODE ON)
