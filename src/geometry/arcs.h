@@ -31,6 +31,16 @@ typedef struct fg_range {
   size_t first, last;
 } fg_range;
 
+/* A jump of the scan within an arc. */
+typedef struct fg_arc_step {
+  double chance;      /* of residuals that look as much like a jump by noise; 1: none was sought */
+  double jump_mm;     /* signed, along x or y; NaN: none was sought */
+  double gain;        /* by how much the jump lowers the sum of squared residuals, mm² */
+  double smooth_gain; /* by how much an oval does, with two more parameters, mm² */
+  double variance_left;    /* of the residuals from a circle with the jump, mm² */
+  double covariance[3][3]; /* mean squares of the change of x, y and R if the scan jumps; mm² */
+} fg_arc_step;
+
 /* One or more ranges of one circle (an arc has one, the overall circle has a land each). */
 typedef struct fg_arc {
   const fg_range *ranges;
@@ -40,6 +50,7 @@ typedef struct fg_arc {
   double rms_mm;     /* of the residuals that were used */
   size_t points, outliers;
   double covariance[3][3];
+  fg_arc_step step; /* of a bump */
 } fg_arc;
 
 /* Fits the circle to all usable stations of the ranges. Points further than 5 robust sd (and at

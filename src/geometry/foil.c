@@ -9,8 +9,9 @@
 
 #include "core/memory.h"
 #include "core/select.h"
-#include "core/spread.h"
 #include "geometry/arc_foil.h"
+#include "geometry/arc_step.h"
+#include "geometry/bump_misfit.h"
 #include "geometry/bump_places.h"
 #include "geometry/defects.h"
 #include "geometry/fillet_deviation.h"
@@ -18,18 +19,13 @@
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
 #include "geometry/land_deviation.h"
-#include "geometry/land_step.h"
 #include "geometry/recognise.h"
 #include "geometry/shadow_uncertainty.h"
 
 /* A bump is crushed when its height or radius is off the sound ones' by this factor. */
 #define CRUSHED_HEIGHT 0.6
 #define CRUSHED_RADIUS 1.6
-/* A bump is no circle where its scatter exceeds the median by this share and by so many standard
- * deviations among the bumps. */
-#define POOR_SHARE    0.3
-#define POOR_SIGMAS   4.0
-#define OUTLIER_SHARE 0.02
+#define OUTLIER_SHARE  0.02
 /* Below so many blurs of width, no plateau is left between the edges. */
 #define COARSE_WIDTHS 2.0
 /* Springback moves the overall radius by less than this factor, and the thickness by nothing. */
@@ -106,6 +102,7 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   bump->points = arc->points;
   if ((double)arc->outliers > OUTLIER_SHARE * (double)arc->points) bump->flags |= FG_BUMP_OUTLIERS;
   bump->flags |= fg_defect_flags(layout, i);
+  if (layout->fitted[i] && fg_arc_step_is_flagged(arc)) bump->flags |= FG_BUMP_POOR_FIT;
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_bump_derive(design, nominal, &foil->overall, &strip, bump);
   if (!layout->fitted[i]) bump->position_deg = stretch_position_deg(foil, arc->ranges[0]);
@@ -140,37 +137,21 @@ static double get_height(const fg_bump *b) {
 static double get_radius(const fg_bump *b) {
   return b->radius_mm;
 }
-static double get_rms(const fg_bump *b) {
-  return b->rms_um;
-}
-
-/* By how much a bump's scatter may exceed the median of all. */
-static double rms_margin(fg_context *ctx, const fg_foil *foil, double median) {
-  double *off = NULL, limit;
-  size_t n = 0;
-  if (fg_memory_allocate(ctx, foil->bump_count, sizeof *off, (void **)&off) != FG_OK) return NAN;
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (isfinite(foil->bumps[i].rms_um)) off[n++] = fabs(foil->bumps[i].rms_um - median);
-  limit = fg_spread_limit(off, n, POOR_SIGMAS);
-  free(off);
-  return fmax(POOR_SHARE * median, limit);
-}
-
 static bool is_beyond(double value, double reference, double factor) {
   return value > factor * reference || value < reference / factor;
 }
 
 /* Bumps are held against their median, the design after the foil's springback; a median
  * that is itself far off the design is that of crushed bumps, and no reference. */
-static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
-                       fg_foil *foil) {
+static void flag_bumps(fg_context *ctx, const fg_layout *layout, const fg_design *design,
+                       const fg_nominal *nominal, fg_foil *foil) {
   double height = median_of(ctx, foil, get_height), radius = median_of(ctx, foil, get_radius);
   if (height < CRUSHED_HEIGHT * nominal->height_mm ||
       is_beyond(radius, design->bumps.radius_mm, CRUSHED_RADIUS)) {
     height = nominal->height_mm;
     radius = design->bumps.radius_mm;
   }
-  double rms = median_of(ctx, foil, get_rms), rms_max = rms + rms_margin(ctx, foil, rms);
+  double rms_max = 1000 * fg_misfit_rms_limit(ctx, layout);
   for (size_t i = 0; i < foil->bump_count; i++) {
     fg_bump *b = &foil->bumps[i];
     if (b->height_mm < CRUSHED_HEIGHT * height || is_beyond(b->radius_mm, radius, CRUSHED_RADIUS))
@@ -244,7 +225,7 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   fg_layout_overall(layout, design, &foil->overall);
   order_bumps(layout, foil);
   fg_places_number(layout, design, &nominal, foil);
-  flag_bumps(ctx, design, &nominal, foil);
+  flag_bumps(ctx, layout, design, &nominal, foil);
   fg_foil_recognise(design, foil);
   flag_mixed_bumps(foil);
   find_rotation(foil);
@@ -252,7 +233,7 @@ fg_status fg_foil_fill_bumps(fg_context *ctx, const fg_design *design, fg_layout
   bool land, fillet;
   FG_TRY(fg_land_deviation_find(ctx, layout, &land));
   FG_TRY(fg_fillet_deviation_find(ctx, design, layout, &fillet));
-  const fg_land_step jump = fg_land_step_find(layout);
+  const fg_land_step jump = layout->land_step;
   bool step = jump.chance < FLAGGED_JUMP_CHANCE && jump.jump_mm > FLAGGED_JUMP_MM;
   if (land || fillet || step || layout->land_displaced) foil->flags |= FG_FOIL_LAND_DEVIATES;
   return fg_labels_fill(ctx, layout, design->datum, foil);

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "geometry/arc_step.h"
+#include "geometry/bump_misfit.h"
 #include "geometry/land_step.h"
 #include "geometry/level_uncertainty.h"
 #include "geometry/shadow_uncertainty.h"
@@ -170,7 +172,8 @@ static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
 
 /* Adds what the overall circle changes by if the scan jumps between two lands. */
 static void add_land_step(fg_layout *layout) {
-  const fg_land_step step = fg_land_step_find(layout);
+  fg_land_step_find(layout);
+  const fg_land_step step = layout->land_step;
   for (int p = 0; step.chance < JUMP_CHANCE && p < 3; p++)
     for (int q = 0; q < 3; q++)
       layout->overall.covariance[p][q] += step.change[p] * step.change[q];
@@ -189,14 +192,18 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const f
   foil->noise_um = 1000 * sqrt(noise.covariance[0]);
   foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
   if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
+  double rms_limit_mm = fg_misfit_rms_limit(ctx, layout);
+  FG_TRY(fg_arc_steps_find(ctx, layout));
   bool found = find_edge_model(layout, &half_width, systematic);
   foil->edge_model_um = found ? 1000 * sqrt(fmax(systematic[2][2], 0)) : 0;
   for (size_t i = 0; i < layout->turning.bump_count; i++) {
     if (!layout->fitted[i]) continue;
     fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
+    fg_misfit_widen(&layout->line, rms_limit_mm, &layout->bumps[i]);
     widen_by_loss(foil, &layout->bumps[i]);
     if (found) add_systematic(layout, systematic, &layout->bumps[i]);
     add_line_shift(layout, design, foil, &layout->bumps[i]);
+    fg_arc_step_add(layout, i);
   }
   find_overall_covariance(layout, design, foil);
   add_land_step(layout);

@@ -5,14 +5,10 @@
 
 #include "geometry/layout.h"
 
-typedef struct fg_land_step {
-  double chance;    /* of distances as far from one circle without a jump; 1: no jump was sought */
-  double jump_mm;   /* size of the jump; NaN: none was sought */
-  double change[3]; /* of the circle's x, y and radius, if the scan jumps */
-} fg_land_step;
-
 /* Finds the jump that the lands' distances from the overall circle speak for, against no jump and
- * against an oval foil. The changed centre lies halfway between both parts of the scan. */
-fg_land_step fg_land_step_find(const fg_layout *layout);
+ * against an oval foil, and fills layout->land_step. Displaced are all lands from one on, along any
+ * direction, or all stations beyond one row or column, along y or x. The changed centre lies
+ * halfway between both parts of the scan. */
+void fg_land_step_find(fg_layout *layout);
 
 #endif

@@ -200,10 +200,13 @@ static void find_displaced(fg_layout *layout, const double *oval, size_t usual, 
   oval_row(layout, found, row);
   for (int k = 0; oval && k < OVAL_TERMS; k++)
     expected_mm += oval[k] * row[k];
-  if (fabs(fg_layout_land_distance(layout, found) - expected_mm) < near_limit(layout))
+  double off_mm = fg_layout_land_distance(layout, found) - expected_mm;
+  if (fabs(off_mm) < near_limit(layout)) {
     *land = found;
-  else
+  } else {
     layout->land_displaced = true;
+    layout->gap_off_mm[i] = off_mm;
+  }
 }
 
 /* Regrows every gap's land from its stations nearest to the circle. End gaps have lip or free end
@@ -221,6 +224,7 @@ static void regrow_lands(fg_layout *layout) {
   bool is_oval = fit_oval(layout, oval);
   layout->land_displaced = false;
   for (size_t i = 0; i < gaps; i++) {
+    layout->gap_off_mm[i] = 0;
     find_displaced(layout, is_oval ? oval : NULL, usual, i);
     if (layout->lands[i].last) layout->lands[n++] = layout->lands[i];
   }
@@ -302,6 +306,7 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(fg_arc), (void **)&layout->bumps));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(bool), (void **)&layout->fitted));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps + 2, sizeof(fg_range), (void **)&layout->lands));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bumps + 1, sizeof(double), (void **)&layout->gap_off_mm));
   FG_TRY_EXIT(fit_overall(ctx, design, layout, error));
   if (!*error) FG_TRY_EXIT(fg_parallel_run(ctx, threads, bumps, fit_bump, layout));
 exit:
@@ -317,6 +322,7 @@ void fg_layout_free(fg_layout *layout) {
   free(layout->bumps);
   free(layout->fitted);
   free(layout->lands);
+  free(layout->gap_off_mm);
   memset(layout, 0, sizeof *layout);
 }
 

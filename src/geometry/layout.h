@@ -6,6 +6,13 @@
 #include "geometry/arcs.h"
 #include "geometry/turning.h"
 
+/* A jump of the scan between lands. */
+typedef struct fg_land_step {
+  double chance;    /* of distances as far from one circle without a jump; 1: no jump was sought */
+  double jump_mm;   /* size of the jump; NaN: none was sought */
+  double change[3]; /* of the circle's x, y and radius, if the scan jumps */
+} fg_land_step;
+
 typedef struct fg_layout {
   fg_turning turning;
   fg_datum_line line;
@@ -16,7 +23,9 @@ typedef struct fg_layout {
   fg_range *lands;       /* owned */
   size_t land_count;
   bool land_displaced; /* the land of a gap lies beside the circle, and is in no fit */
+  double *gap_off_mm;  /* per gap, bump_count + 1: by how much its land does; 0: not; owned */
   fg_arc overall;      /* over the lands */
+  fg_land_step land_step;
 } fg_layout;
 
 /* Finds and fits all arcs. `error` gets words (NULL: none) when the foil cannot be laid out:
