@@ -18,6 +18,17 @@ const char *fg_verdict_word(fg_verdict verdict) {
   return fg_verdict_words[verdict];
 }
 
+const char *fg_verdict_phrase(fg_verdict verdict) {
+  static const char *const phrases[] = {
+      [FG_VERDICT_PASS] = "pass",
+      [FG_VERDICT_FAIL] = "fail",
+      [FG_VERDICT_UNDECIDED] = "cannot tell",
+      [FG_VERDICT_NOT_MEASURED] = "not measured",
+      [FG_VERDICT_NONE] = "no tolerances stated",
+  };
+  return phrases[verdict];
+}
+
 double fg_is_in_tolerance(fg_verdict verdict) {
   return verdict == FG_VERDICT_NONE ? NAN : verdict == FG_VERDICT_PASS;
 }

@@ -9,6 +9,9 @@
 /* Words of fg_verdict, in its order. */
 extern const char *const fg_verdict_words[];
 
+/* A verdict as a terminal says it; static. */
+const char *fg_verdict_phrase(fg_verdict verdict);
+
 /* Value of "in_tolerance": true for a pass alone, null where nothing is judged. */
 double fg_is_in_tolerance(fg_verdict verdict);
 

@@ -135,7 +135,7 @@ grep -q "that takes a break-away test" gap.html || fail "the page does not say w
 run 2 "" gap.csv --limit preload_kpa=1:9 --text -
 sed 's/^bearing,//;s/^T,//' thesis.csv >unnamed.csv
 run 0 "the load test has a gap, where nothing presses the rotor" gap.csv --break-away unnamed.csv --text -
-run 3 "cannot_tell" gap.csv --break-away unnamed.csv --limit preload_kpa=:5 --text -
+run 3 "cannot tell" gap.csv --break-away unnamed.csv --limit preload_kpa=:5 --text -
 run 0 "" gap.csv --break-away unnamed.csv -o both.json
 [ "$(value both.json '[(b["name"], b["azimuths"], b["break_away"]["pulls"]) for b in r["bearings"]]')" = "[('gap', 1, 24)]" ] ||
   fail "a break-away test without a name is that of the only bearing"

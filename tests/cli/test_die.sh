@@ -108,7 +108,7 @@ done
 
 # Verdicts: bumps that no trace shows are not measured; a limit beyond the values, between them, within U.
 design 9 mid '"radius_error_pct": {"max": 1}' >seen.json
-expect 2 "not_measured: 4 bumps that no trace shows whole" "$program" die con*.txt --design seen.json --table -
+expect 2 "not measured: 4 bumps that no trace shows whole" "$program" die con*.txt --design seen.json --table -
 design 0 mid '"radius_error_pct": {"max": 1}' >wide.json
 expect 0 "pass: every value is within" "$program" die con*.txt --design wide.json --table -
 design 0 mid '"radius_error_pct": {"max": 0.25}' >narrow.json

@@ -122,7 +122,7 @@ expect 0 "a stretch that the record did not sample: U holds the stretch" "$progr
 record all displacement -0.12 0.12 && judged all 2 withheld
 judged all 3 withheld --limit clearance_mm=:0.05
 judged all 3 withheld --limit clearance_mm=:5
-expect 3 "cannot_tell.*with a limit within U or withheld" "$program" stiffness --azimuth 0 all.csv --limit clearance_mm=:5 --text -
+expect 3 "cannot tell.*with a limit within U or withheld" "$program" stiffness --azimuth 0 all.csv --limit clearance_mm=:5 --text -
 "$program" stiffness --azimuth 0 all.csv --html all.html >/dev/null 2>&1
 grep -q "that leaves nothing known there is no clearance" all.html || fail "the page has no reason"
 # A probe that runs out of its range behind one contact: little of that branch is left, which does not mean no gap.

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "foilgauge/die_report.h"
+#include "report/verdict_members.h"
 
 static void write_number(FILE *out, double value, int width, int decimals, const char *sign) {
   if (isfinite(value))
@@ -34,7 +35,7 @@ static void write_side(FILE *out, const fg_die *die, const fg_die_side *side) {
     write_die_row(out, bump->value, bump->value[FG_DIE_RADIUS].sd);
     fprintf(out, "%s%s\n", verdict == FG_VERDICT_NONE || verdict == FG_VERDICT_PASS ? "" : "  ",
             verdict == FG_VERDICT_NONE || verdict == FG_VERDICT_PASS ? ""
-                                                                     : fg_verdict_word(verdict));
+                                                                     : fg_verdict_phrase(verdict));
   }
   fputs("  mean", out);
   write_die_row(out, side->mean, side->mean[FG_DIE_RADIUS].sd);
@@ -64,7 +65,7 @@ fg_status fg_die_write_table(fg_context *ctx, const fg_die *die, FILE *out) {
   fprintf(out, "die against design %s: R %.4f mm, alpha %.3f deg, R0 %.4f mm, of the strip's %s\n",
           die->design.name, die->design.bumps.radius_mm, die->design.bumps.angle_deg,
           die->design.overall_radius_mm, datum_words[die->design.datum]);
-  fprintf(out, "%s: %s\n", fg_verdict_word(outcome.verdict), words);
+  fprintf(out, "%s: %s\n", fg_verdict_phrase(outcome.verdict), words);
   for (int half = 0; half < FG_DIE_HALVES; half++)
     if (die->half[half].traces) write_half(out, die, (fg_die_half)half);
   if (die->half[0].traces && die->half[1].traces) {

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "foilgauge/load_report.h"
 #include "report/load_test/members.h"
+#include "report/verdict_members.h"
 
 static void put_break_away(FILE *out, const fg_load_test *test, const fg_load_bearing *b) {
   char flags[1200];
@@ -59,7 +60,7 @@ fg_status fg_load_write_text(fg_context *ctx, const fg_load_test *test, FILE *ou
   char words[300];
   fg_report_outcome outcome;
   fg_load_judge(test, &outcome, words, sizeof words);
-  fprintf(out, "%s: %s\n", fg_verdict_word(outcome.verdict), words);
+  fprintf(out, "%s: %s\n", fg_verdict_phrase(outcome.verdict), words);
   for (size_t i = 0; i < test->bearing_count; i++)
     put_bearing(out, test, i);
   fprintf(
