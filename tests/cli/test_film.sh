@@ -166,7 +166,7 @@ cmp -s few.csv joined.csv || fail "joined shards differ from the whole"
 for other in "--seed 2" "--load 21" "--shims=-7:8" "--mesh 4,4"; do
   expect 65 "draws of another bearing" "$program" film $draws --draws 12 --keep kept $other
 done
-expect 65 "no file that" "$program" film $draws --draws 12 --keep design.json
+expect 65 "not a file that" "$program" film $draws --draws 12 --keep design.json
 for bad in 0/2 3/2 1.0/3 1/3x ' 1/3' -1/3 +1/3 1/ /3 1; do # like those of lots
   expect 64 "is not I/N with I from 1 to N" "$program" film $draws --draws 12 --keep part1 --shard "$bad"
   expect 64 "is not I/N with I from 1 to N" "$program" lot scans --recipe r.json -o no --shard "$bad"
@@ -343,7 +343,7 @@ tested bad.json 0.08 0.08 '{**rows[0], "azimuth_deg": 60, "gap_mm": None}'
 expect 65 "azimuth 60 has no gap" "$program" film $fast --foils bad.json
 sed 's/{"name": "A"}/{"name": "A"}, {"name": "B"}/' round.json >bad.json
 expect 64 "holds the bore already" "$program" film $fast --foils round.json --bore round.csv
-expect 65 "2 bearings; test the one" "$program" film $fast --foils bad.json
+expect 65 "2 bearings, and a film is of one" "$program" film $fast --foils bad.json
 
 # Near lift-off a film may lie before or behind the gap between two pads, and one path meets one of both: no speed of the map between two
 # that have a film is without.

@@ -56,7 +56,7 @@ assert r['after']['held_out_rms'] < r['before']['held_out_rms'] / 10 and r['erro
 grep -q '"turn_deg": 90' pair.json || fail "the quarter turn is not read from the pictures"
 expect 0 "" "$program" loop --same-part a.png b.png --turned 0,90 --design dots.json -o said.json
 cmp -s pair.json said.json || fail "a turn that is said differs from the same that is found"
-expect 64 "multiples of 90" "$program" loop --same-part a.png b.png --turned 0,45 --design dots.json
+expect 64 "not a multiple of 90" "$program" loop --same-part a.png b.png --turned 0,45 --design dots.json
 
 # A scan that only confirms: its marks err by the scanner and the board before, and by their noise after.
 spec c.json dots 182 9 "$scale"

@@ -52,6 +52,6 @@ expect 0 "" "$program" loop --form discs optics.png -o optics.json
 [ "$(value optics.json "[c['id'] for c in r['claims'] if 'witness' in c]")" = "[]" ] || fail "the optics have a witness"
 
 for gap in x 0 0,0 8, 8,x 5000 nan 8,8,8; do
-  expect 64 "--colour-gap $gap: one or two numbers of rows" "$program" loop seen.png --colour-gap "$gap"
+  expect 64 "--colour-gap: '$gap' is not one or two numbers of rows" "$program" loop seen.png --colour-gap "$gap"
 done
 exit $failed

@@ -64,7 +64,7 @@ sed 's/"left desk"/null/' left.json >nameless.json
 expect 65 'does not say which scanner' "$program" measure a.png --model nameless.json --scanner 'left desk'
 expect 0 '' "$program" measure a.png --model nameless.json -o x.out
 expect 64 'give one' "$program" measure a.png --scanner 'left desk'
-expect 64 'name of 1 to' "$program" loop a.png --scanner ''
+expect 64 'name must have 1 to' "$program" loop a.png --scanner ''
 render half 3 -75 "$scale" 600
 expect 65 '600 dpi and the model is of a scanner at 1200' "$program" measure half.png --model left.json -o never.out
 [ ! -e never.out ] || fail "a refused model leaves a report behind"

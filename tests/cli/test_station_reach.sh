@@ -32,7 +32,7 @@ refused 64 "is no name" --host "http://scanner" --token-file "$work/token"
 refused 64 "one of them" --token "$token" --token-file "$work/token"
 refused 74 "cannot be opened" --token-file "$work/nowhere"
 : >"$work/empty"
-refused 65 "no token" --token-file "$work/empty"
+refused 65 "must be the token" --token-file "$work/empty"
 echo short >"$work/short"
 refused 64 "a token needs 16 to 64" --token-file "$work/short"
 
