@@ -109,7 +109,7 @@ printf 'temperature_C,duration_h,springback_error_pct\n500,3,-13\n500,0,-9\n600,
 expect 65 "row 2: duration_h is 0" "$program" forming --fit bad.csv
 expect 65 "bad.csv: .*spring" "$program" forming --fit bad.csv --response spring
 echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [5]}' >discs.json
-expect 65 "is not bent in a die" "$program" forming discs.json
+expect 65 "has no strip that is bent" "$program" forming discs.json
 expect 65 "form.json: not a report of .foilgauge die" "$program" forming --die form.json
 expect 64 "belong together" "$program" forming --temperature 650
 expect 64 "says temperature and time already" "$program" forming --temperature 650 --time 5 --schedule hold.csv
