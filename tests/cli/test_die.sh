@@ -155,7 +155,7 @@ expect 0 '' "$program" die --reversed dusty_1.txt -o dust.json
 [ "$(value dust.json 'r["traces"][0]["bumps_lost"]')" = '[5]' ] || fail "reversed: $(value dust.json 'r["traces"][0]["bumps_lost"]')"
 listened=stdout
 echo '{"schema":"foilgauge/design/1","tolerances":{"radius_mm":{"min":3,"max":4}}}' >wide.json
-expect 2 'not_measured: 2 bumps that no trace shows whole; .*; lost to dust or a lost contact: concave bump 5$' \
+expect 2 'not measured: 2 bumps that no trace shows whole; .*; lost to dust or a lost contact: concave bump 5$' \
   "$program" die dusty_1.txt dusty_2.txt --design wide.json --table -
 grep -q 'traced, but lost to dust or a lost contact: bump 5$' stdout || fail "the table: $(grep -i bump stdout | head -3)"
 

@@ -82,7 +82,7 @@ END
 PYTHONPATH=. python3 check.py r.json || fail "gaps are not the truth"
 # A bearing without a gap fails no limit of its clearance by a number that it does not have.
 python3 make.py pressed.csv pressed
-run 2 "not_measured" pressed.csv --limit clearance_mm=:0.001 --text -
+run 2 "not measured" pressed.csv --limit clearance_mm=:0.001 --text -
 run 2 "" pressed.csv --html pressed.html
 grep -q "no gap: the foils of both sides" pressed.html || fail "the page does not say no gap"
 
