@@ -2,8 +2,11 @@
 /* Restricted likelihood of the cells' means and of the scatter within cells, profiled over mean and
  * repeatability: with r the variances over that of the repeatability,
  *
- *   V = r_p P P' + r_o O O' + r_i I + diag(1 / n),  q = m' (V^-1 - V^-1 1 1' V^-1 / 1' V^-1 1) m +
- * SS -2 log L = log |V| + log 1' V^-1 1 + (N - 1) log q
+ *   V = r_p P P' + r_o O O' + r_i I + diag(1 / n)
+ *
+ *   q = m' (V^-1 - V^-1 1 1' V^-1 / 1' V^-1 1) m + SS
+ *
+ *   -2 log L = log |V| + log 1' V^-1 1 + (N - 1) log q
  */
 #include "foilgauge/gauge_uneven.h"
 
@@ -16,7 +19,13 @@
 #include <gsl/gsl_multimin.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "foilgauge/distribution.h"
+
+/* Trials that differ by no more than this share of their value are rounded alike, not measured. */
+#define ROUNDING 1e-12
+/* Criterion of ratios that no covariance has: GSL's simplex ends at an infinite one. */
+#define IMPOSSIBLE 1e300
 
 enum { PARTS, OPERATORS, INTERACTION, RATIOS };
 
@@ -42,14 +51,14 @@ static cell *find_cell(cells *c, size_t part, size_t who) {
   return &c->at[c->count++];
 }
 
-/* Welford's running mean and sum of squares; false: too many cells. */
+/* Welford's running mean, beside the first value, and sum of squares; false: too many cells. */
 static bool gather(cells *c, const fg_gauge_trial *trial, size_t count) {
   for (size_t i = 0; i < count; i++) {
     cell *at = find_cell(c, trial[i].part, trial[i].who);
     if (!at) return false;
-    double step = trial[i].value - at->mean;
+    double value = trial[i].value - trial[0].value, step = value - at->mean;
     at->mean += step / ++at->count;
-    c->within += step * (trial[i].value - at->mean);
+    c->within += step * (value - at->mean);
   }
   c->values = count;
   return true;
@@ -70,7 +79,7 @@ static void fill_covariance(const cells *c, const double ratio[RATIOS]) {
 static double criterion(const cells *c, const double ratio[RATIOS], double *q) {
   double weight, mean, squares, log_det = 0;
   fill_covariance(c, ratio);
-  if (gsl_linalg_cholesky_decomp1(c->v)) return INFINITY;
+  if (gsl_linalg_cholesky_decomp1(c->v)) return IMPOSSIBLE;
   for (size_t i = 0; i < c->count; i++) {
     log_det += 2 * log(gsl_matrix_get(c->v, i, i));
     gsl_vector_set(c->one, i, 1);
@@ -82,7 +91,12 @@ static double criterion(const cells *c, const double ratio[RATIOS], double *q) {
   gsl_blas_ddot(c->one, c->mean, &mean);
   gsl_blas_ddot(c->mean, c->mean, &squares);
   *q = squares - mean * mean / weight + c->within;
-  return log_det + log(weight) + ((double)c->values - 1) * log(*q);
+  double value = log_det + log(weight) + ((double)c->values - 1) * log(*q);
+  return isfinite(value) ? value : IMPOSSIBLE;
+}
+
+static bool do_trials_differ(const cells *c, double value) {
+  return c->within > (double)c->values * pow(ROUNDING * value, 2);
 }
 
 /* The search is over standard deviations, which it may pass through 0. */
@@ -196,13 +210,15 @@ fg_status fg_gauge_study_uneven(fg_context *ctx, const fg_gauge_trial *trial, si
                             .range_grr = NAN,
                             .range_part = NAN,
                             .range_total = NAN};
+  fg_numerics_start();
   FG_TRY(fg_memory_allocate(ctx, FG_GAUGE_CELLS_MAX, sizeof *c.at, (void **)&c.at));
   bool few = gather(&c, trial, count);
   study->parts = renumber(&c, false);
   study->operators = renumber(&c, true);
   for (size_t i = 0; i < c.count; i++)
     study->trials = (size_t)fmax((double)study->trials, c.at[i].count);
-  if (!few || study->parts < 2 || study->operators < 2 || count <= c.count || !(c.within > 0)) {
+  if (!few || study->parts < 2 || study->operators < 2 || count <= c.count ||
+      !do_trials_differ(&c, trial[0].value)) {
     status =
         fg_fail(ctx, FG_ERR_DATA,
                 "a gauge study needs two parts and operators, repeated trials that differ, and "

@@ -67,6 +67,10 @@ static void too_little_is_refused(void **state) {
   fg_gauge_study study;
   assert_int_equal(fg_gauge_study_uneven(&ctx, uneven, 3, &study), FG_ERR_DATA); /* one operator */
   assert_int_equal(fg_gauge_study_uneven(&ctx, uneven, 0, &study), FG_ERR_DATA);
+  fg_gauge_trial alike[7];
+  for (size_t i = 0; i < 7; i++)
+    alike[i] = (fg_gauge_trial){.part = i / 4, .who = i / 2 % 2, .value = 63.1 + 1e-14 * (double)i};
+  assert_int_equal(fg_gauge_study_uneven(&ctx, alike, 7, &study), FG_ERR_DATA);
 }
 
 int main(void) {
