@@ -98,17 +98,19 @@ static char *page_of_operators(size_t scans) {
   return page;
 }
 
-/* One scan that is missing takes the gauge study away; the page says so. */
+/* A study of which one scan of eight is missing is one; of which three are, none, and the page says
+ * so. */
 static void a_missing_gauge_study_has_its_reason(void **state) {
   (void)state;
   static const char reason[] = "Here are 5 measured scans of 2 foils by 2 operators.";
-  char *whole = page_of_operators(8), *most = page_of_operators(7), *part = page_of_operators(5);
+  char *whole = page_of_operators(8), *one_missing = page_of_operators(7),
+       *part = page_of_operators(5);
   assert_non_null(strstr(whole, "Gauge repeatability"));
   assert_null(strstr(whole, "it takes every foil by every operator"));
-  assert_non_null(strstr(most, "Gauge repeatability"));
+  assert_non_null(strstr(one_missing, "Gauge repeatability"));
   assert_non_null(strstr(part, reason));
   free(whole);
-  free(most);
+  free(one_missing);
   free(part);
 }
 
