@@ -7,11 +7,17 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/small_solve.h"
 #include "core/spread.h"
+#include "geometry/jump.h"
 
 /* PLACES: of a jump that are tried over an arc's extent along an axis. */
-enum { CIRCLE_TERMS = 3, SMOOTH_TERMS = 5, PLACES = 128, BUMPS_MIN = 5, STATIONS_MIN = 16 };
+enum {
+  CIRCLE_TERMS = FG_JUMP_CIRCLE_TERMS,
+  SMOOTH_TERMS = 5,
+  PLACES = 128,
+  BUMPS_MIN = 5,
+  STATIONS_MIN = 16
+};
 /* Min share of the edges' crossings on either side of a jump. */
 #define SIDE_MIN 0.04
 /* Of noise, over both axes: places that are as good as independent, and the median over arcs of the
@@ -42,12 +48,6 @@ typedef struct arc_work {
   size_t count, edges;
 } arc_work;
 
-/* Least squares of an arc: a circle's moves alone, and products of the jump's column. */
-typedef struct arc_sums {
-  double inverse[FG_SMALL_MAX][FG_SMALL_MAX], moves[FG_SMALL_MAX];
-  double with_residual, with_itself, with_row[CIRCLE_TERMS]; /* of the jump */
-} arc_sums;
-
 static void list_stations(const fg_datum_line *line, const fg_arc *arc, arc_work *work) {
   work->count = 0;
   work->edges = line->is_edge ? 1 : 2;
@@ -64,7 +64,7 @@ static void list_stations(const fg_datum_line *line, const fg_arc *arc, arc_work
 }
 
 /* Fits a circle's moves, with `smooth` an oval's, too, to the residuals; the squares left. */
-static double fit_moves(const arc_work *work, bool smooth, arc_sums *sums) {
+static double fit_moves(const arc_work *work, bool smooth, fg_jump_sums *sums) {
   fg_normal_equations system;
   fg_normal_clear(&system, smooth ? SMOOTH_TERMS : CIRCLE_TERMS);
   for (size_t i = 0; i < work->count; i++) {
@@ -81,7 +81,7 @@ static double fit_moves(const arc_work *work, bool smooth, arc_sums *sums) {
 }
 
 /* The jump passes an edge of a station. */
-static void pass_edge(arc_station *s, double share, int axis, arc_sums *sums) {
+static void pass_edge(arc_station *s, double share, int axis, fg_jump_sums *sums) {
   double more = share * s->row[axis], residual = s->residual;
   for (int k = 0; k < CIRCLE_TERMS; k++) {
     residual -= sums->moves[k] * s->row[k];
@@ -112,20 +112,10 @@ static void weigh_jump(double gain, double jump_mm, int axis, const double *chan
   search->sum[axis][axis] += weight * jump_mm * jump_mm / 4;
 }
 
-/* The jump's column is c where it lies beyond, so half of it everywhere is half a displacement of
- * the whole: the changed centre lies halfway between both parts. */
-static void try_jump(const arc_sums *sums, int axis, jump_search *search) {
-  double moved[CIRCLE_TERMS], change[CIRCLE_TERMS], own = sums->with_itself;
-  for (int p = 0; p < CIRCLE_TERMS; p++) {
-    moved[p] = 0;
-    for (int q = 0; q < CIRCLE_TERMS; q++)
-      moved[p] += sums->inverse[p][q] * sums->with_row[q];
-    own -= moved[p] * sums->with_row[p];
-  }
-  if (!(own > 0)) return;
-  double jump_mm = sums->with_residual / own, gain = sums->with_residual * jump_mm;
-  for (int k = 0; k < CIRCLE_TERMS; k++)
-    change[k] = sums->moves[k] - moved[k] * jump_mm + (k == axis ? jump_mm / 2 : 0);
+static void try_jump(const fg_jump_sums *sums, int axis, jump_search *search) {
+  double change[CIRCLE_TERMS], jump_mm;
+  if (!fg_jump_solve(sums, axis, 0, &jump_mm, change)) return;
+  double gain = sums->with_residual * jump_mm;
   if (search->variance > 0) {
     weigh_jump(gain, jump_mm, axis, change, search);
   } else if (gain > search->step->gain) {
@@ -135,7 +125,7 @@ static void try_jump(const arc_sums *sums, int axis, jump_search *search) {
 }
 
 /* Tries all places along an axis. */
-static void try_axis(arc_work *work, int axis, arc_sums *sums, jump_search *search) {
+static void try_axis(arc_work *work, int axis, fg_jump_sums *sums, jump_search *search) {
   size_t heads[PLACES], all = work->count * work->edges, passed = 0;
   double min = INFINITY, max = -INFINITY;
   for (size_t e = 0; e < all; e++) {
@@ -166,7 +156,7 @@ static void try_axis(arc_work *work, int axis, arc_sums *sums, jump_search *sear
 
 /* The best jump of one arc, or with a variance of the noise the mean squares over all. */
 static void search_arc(const fg_datum_line *line, double variance, arc_work *work, fg_arc *arc) {
-  arc_sums sums;
+  fg_jump_sums sums;
   jump_search search = {.step = &arc->step, .variance = variance};
   list_stations(line, arc, work);
   if (work->count < STATIONS_MIN) return;

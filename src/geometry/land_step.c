@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/small_solve.h"
+#include "geometry/jump.h"
 
 /* An oval explains the distances as well where it leaves so many times the jump's squares. */
 #define OVAL_SQUARES 2.0
@@ -19,7 +19,13 @@
 #define SEEN_SHARE 1e-3
 
 /* PLACES: of a jump of all beyond one row or column that are tried over the lands. */
-enum { CIRCLE_TERMS = 3, TERMS = 5, LANDS_MIN = 8, LANDS_MAX = 256, PLACES = 96 };
+enum {
+  CIRCLE_TERMS = FG_JUMP_CIRCLE_TERMS,
+  TERMS = 5,
+  LANDS_MIN = 8,
+  LANDS_MAX = 256,
+  PLACES = 96
+};
 
 /* Mean distances of lands from the circle, outwards, their directions from its centre, and their
  * extents along x and y. */
@@ -86,7 +92,7 @@ static double fit_lands(const land_list *lands, size_t first, bool oval, double 
 /* The lands' distances from the best circle, and what a jump along an axis adds to each. */
 typedef struct land_jump {
   const land_list *lands;
-  double inverse[FG_SMALL_MAX][FG_SMALL_MAX], moves[FG_SMALL_MAX];
+  fg_jump_sums sums;
   int axis;
   double gain; /* of the best jump so far, mm² */
 } land_jump;
@@ -94,32 +100,27 @@ typedef struct land_jump {
 /* Tries a jump of all beyond a row or column, along y or x. A land may lie on both sides. */
 static void try_row(double at_mm, land_jump *jump, fg_land_step *step) {
   const land_list *lands = jump->lands;
-  double with_row[CIRCLE_TERMS] = {0}, product = 0, own = 0, moved[CIRCLE_TERMS];
+  fg_jump_sums *sums = &jump->sums;
+  double change[CIRCLE_TERMS], jump_mm;
+  sums->with_residual = sums->with_itself = 0;
+  memset(sums->with_row, 0, sizeof sums->with_row);
   for (size_t i = 0; i < lands->count; i++) {
     double min = lands->min_mm[i][jump->axis], max = lands->max_mm[i][jump->axis];
     double share = at_mm >= max ? 0 : at_mm <= min ? 1 : (max - at_mm) / (max - min);
     const double *row = lands->row[i];
     double column = share * row[jump->axis], rest = lands->distance_mm[i];
     for (int k = 0; k < CIRCLE_TERMS; k++) {
-      rest -= jump->moves[k] * row[k];
-      with_row[k] += column * row[k];
+      rest -= sums->moves[k] * row[k];
+      sums->with_row[k] += column * row[k];
     }
-    product += column * rest;
-    own += column * column;
+    sums->with_residual += column * rest;
+    sums->with_itself += column * column;
   }
-  double square = own;
-  for (int p = 0; p < CIRCLE_TERMS; p++) {
-    moved[p] = 0;
-    for (int q = 0; q < CIRCLE_TERMS; q++)
-      moved[p] += jump->inverse[p][q] * with_row[q];
-    own -= moved[p] * with_row[p];
-  }
-  if (!(own > SEEN_SHARE * square) || !(product * product / own > jump->gain)) return;
-  double jump_mm = product / own;
-  jump->gain = product * jump_mm;
+  if (!fg_jump_solve(sums, jump->axis, SEEN_SHARE, &jump_mm, change)) return;
+  if (!(sums->with_residual * jump_mm > jump->gain)) return;
+  jump->gain = sums->with_residual * jump_mm;
   step->jump_mm = fabs(jump_mm);
-  for (int k = 0; k < CIRCLE_TERMS; k++)
-    step->change[k] = jump->moves[k] - moved[k] * jump_mm + (k == jump->axis ? jump_mm / 2 : 0);
+  memcpy(step->change, change, sizeof change);
 }
 
 /* A jump of all beyond a row or column, which may displace lands in the middle of the foil. */
@@ -130,7 +131,7 @@ static fg_land_step find_row_step(const land_list *lands, double none, double ov
   fg_normal_clear(&system, CIRCLE_TERMS);
   for (size_t i = 0; i < lands->count; i++)
     fg_normal_add(&system, lands->row[i], lands->distance_mm[i], 1);
-  if (!fg_normal_solve(&system, 0, jump.moves, jump.inverse)) return step;
+  if (!fg_normal_solve(&system, 0, jump.sums.moves, jump.sums.inverse)) return step;
   for (jump.axis = 0; jump.axis < 2; jump.axis++) {
     double min = INFINITY, max = -INFINITY;
     for (size_t i = 0; i < lands->count; i++) {
