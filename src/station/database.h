@@ -62,8 +62,8 @@ int64_t fg_station_now(void);
 /* SQL: a row of `foils` is the newest scan of its foil, of those that measured it. Foils without a
  * serial number are scanned once. */
 #define FG_NEWEST_SCAN_OF_FOIL                                                                     \
-  " (foils.serial = '' OR NOT EXISTS (SELECT 1 FROM foils AS later WHERE later.serial ="           \
-  " foils.serial AND later.lot = foils.lot AND later.id > foils.id AND later.verdict <>"           \
-  " 'not_measured'))"
+  " (foils.serial = '' OR NOT EXISTS (SELECT 1 FROM foils AS later INDEXED BY foils_by_serial"     \
+  " WHERE later.serial = foils.serial AND later.lot = foils.lot AND later.id > foils.id AND"       \
+  " later.verdict <> 'not_measured'))"
 
 #endif

@@ -121,8 +121,8 @@ static void write_point(const page *p, size_t point) {
 }
 
 static void write_changes(const page *p) {
-  fg_trend_change change[FG_TREND_CHANGES];
-  size_t count = fg_trend_changes(p->reader, p->trend, change);
+  const fg_trend_change *change = p->trend->change;
+  size_t count = p->trend->changes;
   if (!count) return;
   fputs(" Dotted brown: foils were measured in another way from there on:", p->out);
   for (size_t i = 0; i < count; i++) {

@@ -186,6 +186,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_station_request *reque
                                 const fg_lot_settings *settings, sqlite3 *reader, fg_trend *trend) {
   FG_TRY(read_values(ctx, reader, trend));
   choose_points(trend);
+  fg_trend_find_changes(reader, trend);
   find_trend_spread(&trend->quantity);
   FG_TRY(fg_trend_find_tolerance(ctx, reader, trend));
   if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);

@@ -6,6 +6,13 @@
 #include "lot/statistics/analysis.h"
 #include "station/trend_choice.h"
 
+/* A point before which the setup changed: another program, recipe or model of the scanner. */
+typedef struct fg_trend_change {
+  size_t point;
+  bool program, recipe, model;
+} fg_trend_change;
+enum { FG_TREND_CHANGES = 4 };
+
 /* The chart is of `count` points, behind `before` others, of `total`; [first, last] of them are
  * drawn. */
 typedef struct fg_trend {
@@ -19,6 +26,8 @@ typedef struct fg_trend {
   double *shift; /* of each point by causes, about which limits are taken; NULL: there is none */
   struct fg_cause *cause; /* accepted ones; owned */
   size_t causes;
+  fg_trend_change change[FG_TREND_CHANGES]; /* of the drawn range, the newest first */
+  size_t changes;
 } fg_trend;
 
 /* Reads the points. FG_OK also with none, or too few for a chart: then quantity.has_chart is
@@ -44,15 +53,8 @@ enum { FG_TREND_RUNS = 8 }; /* so that a page is one sheet of paper */
 /* Finds the newest FG_TREND_RUNS runs; *all is the number of all. */
 size_t fg_trend_runs(const fg_trend *trend, fg_trend_run runs[FG_TREND_RUNS], size_t *all);
 
-/* A point before which the setup changed: another program, recipe or model of the scanner. */
-typedef struct fg_trend_change {
-  size_t point;
-  bool program, recipe, model;
-} fg_trend_change;
-enum { FG_TREND_CHANGES = 4 };
 /* Finds the newest FG_TREND_CHANGES of the drawn range; none over lots. */
-size_t fg_trend_changes(sqlite3 *reader, const fg_trend *trend,
-                        fg_trend_change change[FG_TREND_CHANGES]);
+void fg_trend_find_changes(sqlite3 *reader, fg_trend *trend);
 
 /* Returns true when the foils of the chart were measured by more than one recipe. */
 bool fg_trend_mixes_recipes(sqlite3 *reader, const fg_trend *trend);

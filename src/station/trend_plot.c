@@ -212,10 +212,8 @@ static void draw_runs(const drawing *d, const fg_trend_run *runs, size_t count) 
 }
 
 static void draw_changes(const drawing *d) {
-  fg_trend_change change[FG_TREND_CHANGES];
-  size_t count = fg_trend_changes(d->reader, d->trend, change);
-  for (size_t i = 0; i < count; i++) {
-    double x = fg_plot_x(&d->at, place_of_point(d, change[i].point) - 0.5);
+  for (size_t i = 0; i < d->trend->changes; i++) {
+    double x = fg_plot_x(&d->at, place_of_point(d, d->trend->change[i].point) - 0.5);
     fprintf(d->at.out, "<path class=\"change\" d=\"M%.1f %.1fV%.1f\"/>\n", x, d->at.top,
             d->at.bottom);
   }

@@ -8,15 +8,14 @@
 #include "core/memory.h"
 
 /* Changes of the setup from one foil to the next, the newest first. A foil measured again by an
- * older setup is a change, too. */
+ * older setup is a change, too. Recipes are long: they are read where the setup changes alone. */
 static const char changes[] =
-    "SELECT id, program <> last_program, recipe <> last_recipe, coalesce(model_sha256, '') <> "
-    "last_model FROM (SELECT foils.id AS id, setups.id AS setup, program, recipe, model_sha256,"
-    " lag(setups.id) OVER each AS last, lag(program) OVER each AS last_program,"
-    " lag(recipe) OVER each AS last_recipe, lag(coalesce(model_sha256, '')) OVER each AS last_model"
-    " FROM foils JOIN scans ON scans.id = scan JOIN setups ON setups.id = setup"
-    " WHERE foils.id BETWEEN ? AND ? WINDOW each AS (ORDER BY foils.id))"
-    " WHERE setup <> last ORDER BY id DESC LIMIT ?";
+    "SELECT foil, now.program <> before.program, now.recipe <> before.recipe,"
+    " now.model_sha256 IS NOT before.model_sha256"
+    " FROM (SELECT foils.id AS foil, setup, lag(setup) OVER (ORDER BY foils.id) AS last"
+    " FROM foils JOIN scans ON scans.id = scan WHERE foils.id BETWEEN ? AND ?) AS each"
+    " JOIN setups AS now ON now.id = each.setup JOIN setups AS before ON before.id = each.last"
+    " WHERE each.setup <> each.last ORDER BY foil DESC LIMIT ?";
 
 /* The first of the drawn points that is not before the foil. */
 static size_t find_point(const fg_trend *trend, int64_t foil) {
@@ -26,23 +25,22 @@ static size_t find_point(const fg_trend *trend, int64_t foil) {
   return point;
 }
 
-size_t fg_trend_changes(sqlite3 *reader, const fg_trend *trend,
-                        fg_trend_change change[FG_TREND_CHANGES]) {
+void fg_trend_find_changes(sqlite3 *reader, fg_trend *trend) {
   fg_context unused;
   fg_query query;
-  size_t count = 0;
-  if (trend->choice->by_lots || trend->last <= trend->first) return 0;
+  if (trend->choice->by_lots || trend->last <= trend->first) return;
   fg_query_begin(reader, changes, &query);
   fg_query_integer(&query, trend->foil[trend->first]);
   fg_query_integer(&query, trend->foil[trend->last]);
   fg_query_integer(&query, FG_TREND_CHANGES);
   while (fg_query_row(&query))
-    change[count++] = (fg_trend_change){.point = find_point(trend, fg_query_get_integer(&query, 0)),
-                                        .program = fg_query_get_integer(&query, 1),
-                                        .recipe = fg_query_get_integer(&query, 2),
-                                        .model = fg_query_get_integer(&query, 3)};
+    trend->change[trend->changes++] =
+        (fg_trend_change){.point = find_point(trend, fg_query_get_integer(&query, 0)),
+                          .program = fg_query_get_integer(&query, 1),
+                          .recipe = fg_query_get_integer(&query, 2),
+                          .model = fg_query_get_integer(&query, 3)};
   /* A chart without these marks is better than none. */
-  return fg_query_end(&unused, &query, "reading the setups") == FG_OK ? count : 0;
+  if (fg_query_end(&unused, &query, "reading the setups") != FG_OK) trend->changes = 0;
 }
 
 static const char recipes_between[] =
