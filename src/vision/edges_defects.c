@@ -69,20 +69,23 @@ static double depth_of(const fg_edge_work *work, const fg_edge_station *s, int s
   return (value - strip) / (background - strip);
 }
 
-static void tally_pixels(defect *t) {
+static void tally_station(defect *t, const fg_pixel_band *band, size_t station) {
   const fg_edge_work *work = t->work;
-  for (size_t c = 0; c < work->chunk_count; c++)
-    for (size_t i = 0; i < work->bands[c].count; i++) {
-      const fg_band_pixel *p = &work->bands[c].pixels[i];
-      size_t k = (size_t)p->station;
-      if (!is_disturbed(work, k)) continue;
-      double across = p->across_px - t->middle_px[k];
-      bool blank = depth_of(work, &work->stations[k], across > 0, p->value) > 0.5;
-      if (fabs(across) < t->inside_px && blank)
-        t->tallies[k].blank[(int)(THIRDS * (0.5 + 0.4999 * across / t->inside_px))]++;
-      else if (fabs(across) > t->beside_px && !blank)
-        t->tallies[k].foreign[across > 0]++;
-    }
+  size_t k = station - band->first;
+  for (size_t i = band->begin[k]; i < band->begin[k + 1]; i++) {
+    double across = band->across_px[i] - t->middle_px[station];
+    bool blank = depth_of(work, &work->stations[station], across > 0, band->value[i]) > 0.5;
+    if (fabs(across) < t->inside_px && blank)
+      t->tallies[station].blank[(int)(THIRDS * (0.5 + 0.4999 * across / t->inside_px))]++;
+    else if (fabs(across) > t->beside_px && !blank)
+      t->tallies[station].foreign[across > 0]++;
+  }
+}
+
+static void tally_pixels(defect *t) {
+  const fg_pixel_band *bands = t->work->bands;
+  for (size_t i = 0; i < t->work->reference->count; i++)
+    if (is_disturbed(t->work, i)) tally_station(t, &bands[i / FG_CHUNK_STATIONS], i);
 }
 
 /* Facts of one run of disturbed stations. */

@@ -50,10 +50,10 @@ typedef struct pixel_batch {
 
 /* Takes a pixel, whose place is counted from the nearer edge. */
 static void take_pixel(const fg_driven_tables *tables, size_t table, double half_px,
-                       const float reach_px[2], fg_edge_station *s, const fg_band_pixel *p,
+                       const float reach_px[2], fg_edge_station *s, float across_px, float value,
                        pixel_batch *batch) {
   const fg_driven_table *own = &tables->list[table];
-  float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
+  float left = s->edge_px[0] - across_px, right = across_px - s->edge_px[1];
   bool side = right > left;
   float d = side ? right : left;
   if (d > reach_px[side]) return;
@@ -64,7 +64,7 @@ static void take_pixel(const fg_driven_tables *tables, size_t table, double half
   batch->station[k] = s;
   batch->right[k] = side;
   batch->start[k] = fg_driven_tables_start(tables, table);
-  batch->value[k] = p->value;
+  batch->value[k] = value;
   batch->steps[k] = steps;
 }
 
@@ -122,17 +122,15 @@ static double table_reach(const fg_edge_work *work, const driven_block *blocks, 
 
 static void add_band(const fg_edge_work *work, size_t chunk, const driven_block *blocks,
                      const fg_driven_tables *tables, const station_reach *reach, float limit) {
-  size_t first, last;
   pixel_batch batch;
   batch.count = 0;
-  fg_edges_chunk(work, chunk, &first, &last);
   const fg_pixel_band *band = &work->bands[chunk];
-  for (size_t i = 0; i < band->count; i++) {
-    size_t station = (size_t)band->pixels[i].station, k = (station - first) / BLOCK_STATIONS;
-    take_pixel(tables, k, blocks[k].half_px, reach[station - first].px, &work->stations[station],
-               &band->pixels[i], &batch);
-    if (batch.count == BATCH) add_batch(tables, &batch, limit);
-  }
+  for (size_t k = 0; k < band->stations; k++)
+    for (size_t i = band->begin[k]; i < band->begin[k + 1]; i++) {
+      take_pixel(tables, k / BLOCK_STATIONS, blocks[k / BLOCK_STATIONS].half_px, reach[k].px,
+                 &work->stations[band->first + k], band->across_px[i], band->value[i], &batch);
+      if (batch.count == BATCH) add_batch(tables, &batch, limit);
+    }
   add_batch(tables, &batch, limit);
 }
 

@@ -26,19 +26,17 @@ static void weigh_pixels(const fg_edge_work *work, size_t chunk) {
   const fg_pixel_band *band = &work->bands[chunk];
   float scale = 2.5f / (float)work->trace->contrast, reach = (float)(work->width_px / 2 + 6);
   float sign = work->segmentation->light_on_dark ? scale : -scale;
-  size_t first, last;
-  fg_edges_chunk(work, chunk, &first, &last);
-  for (size_t i = first; i <= last; i++)
-    work->stations[i].plateau =
-        fg_edges_background(work, &work->reference->stations[i]); /* until the plateau is known */
-  for (size_t i = 0; i < band->count; i++) {
-    const fg_band_pixel *p = &band->pixels[i];
-    if (fabsf(p->across_px) > reach) continue;
-    fg_edge_station *s = &work->stations[p->station];
-    float weight = sign * (p->value - s->plateau) - 0.75f;
-    weight = weight < 0 ? 0 : weight > 1 ? 1 : weight;
-    s->g1 += weight * p->across_px;
-    s->m11 += weight;
+  for (size_t k = 0; k < band->stations; k++) {
+    fg_edge_station *s = &work->stations[band->first + k];
+    /* until the plateau is known */
+    s->plateau = fg_edges_background(work, &work->reference->stations[band->first + k]);
+    for (size_t i = band->begin[k]; i < band->begin[k + 1]; i++) {
+      if (fabsf(band->across_px[i]) > reach) continue;
+      float weight = sign * (band->value[i] - s->plateau) - 0.75f;
+      weight = weight < 0 ? 0 : weight > 1 ? 1 : weight;
+      s->g1 += weight * band->across_px[i];
+      s->m11 += weight;
+    }
   }
 }
 

@@ -123,26 +123,27 @@ static inline __attribute__((always_inline)) int32_t count_of(eight_bits x) {
 
 /* Adds a station's pixels, within the reach of both edges, to its sums. */
 __attribute__((target_clones("avx2", "default"))) static void
-add_station(const fg_edge_tables *tables, const fg_band_pixel *pixels, size_t count,
+add_station(const fg_edge_tables *tables, const fg_pixel_band *band, size_t k,
             const float ends_px[2], float limit, fg_edge_station *s) {
   sums sum;
   memset(&sum, 0, sizeof sum);
-  for (size_t i = 0; i < count;) {
+  size_t end = band->begin[k + 1];
+  for (size_t i = band->begin[k]; i < end;) {
     float across[TOGETHER + LANES], value[TOGETHER + LANES];
     size_t held = 0;
-    for (; i < count && held < TOGETHER; i++) {
-      across[held] = pixels[i].across_px;
-      value[held] = pixels[i].value;
-      held += (pixels[i].across_px >= ends_px[0]) & (pixels[i].across_px <= ends_px[1]);
+    for (; i < end && held < TOGETHER; i++) {
+      across[held] = band->across_px[i];
+      value[held] = band->value[i];
+      held += (band->across_px[i] >= ends_px[0]) & (band->across_px[i] <= ends_px[1]);
     }
-    for (size_t k = 0; k < LANES; k++) {
-      across[held + k] = NAN;
-      value[held + k] = 0;
+    for (size_t j = 0; j < LANES; j++) {
+      across[held + j] = NAN;
+      value[held + j] = 0;
     }
-    for (size_t k = 0; k < held; k += LANES) {
+    for (size_t j = 0; j < held; j += LANES) {
       eight a, v;
-      memcpy(&a, across + k, sizeof a);
-      memcpy(&v, value + k, sizeof v);
+      memcpy(&a, across + j, sizeof a);
+      memcpy(&v, value + j, sizeof v);
       add_eight(tables, s, a, v, limit, &sum);
     }
   }
@@ -159,12 +160,11 @@ add_station(const fg_edge_tables *tables, const fg_band_pixel *pixels, size_t co
 void fg_edges_add_plain(const fg_edge_work *work, size_t chunk, float limit) {
   const fg_pixel_band *band = &work->bands[chunk];
   float outer = fg_edges_outer(work);
-  for (size_t i = 0, next; i < band->count; i = next) {
-    fg_edge_station *s = &work->stations[band->pixels[i].station];
-    for (next = i + 1; next < band->count && band->pixels[next].station == band->pixels[i].station;)
-      next++;
+  for (size_t k = 0; k < band->stations; k++) {
+    fg_edge_station *s = &work->stations[band->first + k];
+    if (band->begin[k] == band->begin[k + 1]) continue;
     const float ends_px[2] = {s->edge_px[0] - fminf((float)FG_REACH_BLURS * s->blur_px[0], outer),
                               s->edge_px[1] + fminf((float)FG_REACH_BLURS * s->blur_px[1], outer)};
-    add_station(work->tables, band->pixels + i, next - i, ends_px, limit, s);
+    add_station(work->tables, band, k, ends_px, limit, s);
   }
 }

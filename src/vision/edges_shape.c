@@ -36,12 +36,11 @@ static fg_status allocate_segments(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
-/* Returns true when a pixel belongs to a disturbed station, or lies outside the reach of the edges'
- * fit and differs from the background there. */
-static bool is_foreign(const fg_edge_work *work, const fg_band_pixel *p) {
-  const fg_edge_station *s = &work->stations[p->station];
-  if (s->facts & FG_STATION_DISTURBED) return true;
-  float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
+/* Returns true when a pixel lies outside the reach of the edges' fit and differs from the
+ * background there. */
+static bool is_foreign(const fg_edge_work *work, const fg_edge_station *s, float across_px,
+                       float value) {
+  float left = s->edge_px[0] - across_px, right = across_px - s->edge_px[1];
   int side = right > left;
   float d = side ? right : left, model, rate;
   float blur = s->blur_px[side];
@@ -49,29 +48,38 @@ static bool is_foreign(const fg_edge_work *work, const fg_band_pixel *p) {
   if (work->driver) blur = hypotf(blur, (float)work->driver->values[FG_DRIVER_RADIUS]);
   if (d < (float)FG_REACH_BLURS * blur) return false;
   fg_edge_tone(work->tables, s->plateau + s->step[side] + s->slope[side] * d, &model, &rate);
-  return fabs(p->value - model) > FOREIGN_SIGMAS * work->noise + FOREIGN_SHARE * work->contrast;
+  return fabs(value - model) > FOREIGN_SIGMAS * work->noise + FOREIGN_SHARE * work->contrast;
+}
+
+/* Adds a station's pixels to the bins of its segment. */
+static void stack_station(const fg_edge_work *work, const fg_pixel_band *band, size_t k,
+                          fg_profile_bin *bins) {
+  const fg_edge_station *s = &work->stations[band->first + k];
+  double half = work->width_px / 2 + work->reach_px;
+  if (work->again && s->facts & FG_STATION_DISTURBED) return;
+  for (size_t i = band->begin[k]; i < band->begin[k + 1]; i++) {
+    float across_px = band->across_px[i], value = band->value[i];
+    if (work->again && is_foreign(work, s, across_px, value)) continue;
+    double across = across_px - s->middle_px;
+    double at = (across + half) * (1 / BIN_PX);
+    if (at < 0 || at >= (double)work->bin_count) continue;
+    fg_profile_bin *bin = &bins[(size_t)at];
+    bin->across_px += across;
+    bin->value += value;
+    bin->count += 1;
+  }
 }
 
 /* Mean profiles of the segments of one chunk, across from the stations' middles. */
 static void stack_chunk(const fg_edge_work *work, size_t chunk) {
-  double half = work->width_px / 2 + work->reach_px;
   size_t first = chunk * FG_CHUNK_SEGMENTS, last = first + FG_CHUNK_SEGMENTS;
   if (last > work->segment_count) last = work->segment_count;
   fg_profile_bin *bins = work->bins + first * work->bin_count;
   size_t count = (last - first) * work->bin_count;
   memset(bins, 0, count * sizeof *bins);
   const fg_pixel_band *band = &work->bands[chunk];
-  for (size_t i = 0; i < band->count; i++) {
-    const fg_band_pixel *p = &band->pixels[i];
-    if (work->again && is_foreign(work, p)) continue;
-    double across = p->across_px - work->stations[p->station].middle_px;
-    double at = (across + half) * (1 / BIN_PX);
-    if (at < 0 || at >= (double)work->bin_count) continue;
-    fg_profile_bin *bin = &work->segments[p->station / FG_SEGMENT_STATIONS].bins[(size_t)at];
-    bin->across_px += across;
-    bin->value += p->value;
-    bin->count += 1;
-  }
+  for (size_t k = 0; k < band->stations; k++)
+    stack_station(work, band, k, work->segments[first + k / FG_SEGMENT_STATIONS].bins);
   for (size_t i = 0; i < count; i++) {
     if (bins[i].count <= 0) continue;
     bins[i].across_px /= bins[i].count;
@@ -151,7 +159,7 @@ static size_t count_equal(const fg_edge_work *work, int end, bool high) {
   for (int pass = 0; pass < 2; pass++)
     for (size_t c = 0; c < work->chunk_count; c++)
       for (size_t i = 0; i < work->bands[c].count; i++) {
-        double value = work->bands[c].pixels[i].value;
+        double value = work->bands[c].value[i];
         if ((int)(value + 0.5) != end) continue;
         if (pass)
           count += fabs(value - outermost) < 0.002;
@@ -192,7 +200,7 @@ static fg_status count_chunk(fg_context *ctx, void *shared, size_t chunk) {
   value_counts *counts = &task->chunks[chunk];
   (void)ctx;
   for (size_t i = 0; i < band->count; i++) {
-    float value = band->pixels[i].value;
+    float value = band->value[i];
     value = value > 0 ? value : 0;
     counts->of[(int)((value < 255 ? value : 255) + 0.5f)]++;
   }

@@ -46,7 +46,7 @@ static void count_values(const fg_edge_work *work, fg_value_counts *counts) {
   fg_value_counts_clear(counts);
   for (size_t c = 0; c < work->chunk_count; c++)
     for (size_t i = 0; i < work->bands[c].count; i += PIXEL_STEP)
-      fg_value_counts_add(counts, work->bands[c].pixels[i].value);
+      fg_value_counts_add(counts, work->bands[c].value[i]);
 }
 
 /* Returns true when a kept tile lies inside the scan and holds no part of an object. */
@@ -115,29 +115,30 @@ typedef struct band_sums {
   double *sums, *counts;
 } band_sums;
 
-/* Adds a pixel that lies `out_px` outside of its edge, if it lies in that edge's band. */
-static void add_to_band(const fg_edge_work *work, const fg_band_pixel *p, int side, float out_px,
-                        band_sums *b) {
-  const fg_edge_station *s = &work->stations[p->station];
-  double d = (double)out_px - fg_band_from(fmax(work->blur_px[side], (double)s->blur_px[side]));
-  if (!(s->weight > 0) || d < 0 || d > FG_BAND_PX) return;
-  size_t at = 2 * ((size_t)p->station / BAND_STATIONS) + (size_t)side;
-  b->sums[at] += (double)p->value;
-  b->counts[at]++;
+/* Adds a station's pixels beside its edges. Most pixels lie on the material or in the blur of its
+ * edges, nearer than `nearest`: they are passed over first. */
+static void add_station(const fg_edge_work *work, const fg_pixel_band *band, size_t k,
+                        float nearest, band_sums *b) {
+  size_t station = band->first + k, at = 2 * (station / BAND_STATIONS);
+  const fg_edge_station *s = &work->stations[station];
+  if (!(s->weight > 0)) return;
+  for (size_t i = band->begin[k]; i < band->begin[k + 1]; i++) {
+    float left = s->edge_px[0] - band->across_px[i], right = band->across_px[i] - s->edge_px[1];
+    int side = right > left;
+    float out_px = side ? right : left;
+    if (out_px < nearest) continue;
+    double d = (double)out_px - fg_band_from(fmax(work->blur_px[side], (double)s->blur_px[side]));
+    if (d < 0 || d > FG_BAND_PX) continue;
+    b->sums[at + (size_t)side] += (double)band->value[i];
+    b->counts[at + (size_t)side]++;
+  }
 }
 
-/* Most pixels lie on the material or in the blur of its edges: they are passed over first. */
 static void add_bands(const fg_edge_work *work, band_sums *b) {
   float nearest = (float)fg_band_from(fmin(work->blur_px[0], work->blur_px[1]));
   for (size_t c = 0; c < work->chunk_count; c++)
-    for (size_t i = 0; i < work->bands[c].count; i++) {
-      const fg_band_pixel *p = &work->bands[c].pixels[i];
-      const float *edge_px = work->stations[p->station].edge_px;
-      float left = edge_px[0] - p->across_px, right = p->across_px - edge_px[1];
-      int side = right > left;
-      float out_px = side ? right : left;
-      if (out_px >= nearest) add_to_band(work, p, side, out_px, b);
-    }
+    for (size_t k = 0; k < work->bands[c].stations; k++)
+      add_station(work, &work->bands[c], k, nearest, b);
 }
 
 static fg_edge_band band_of(const fg_edge_work *work, const band_sums *b, size_t at,

@@ -14,15 +14,14 @@
 extern "C" {
 #endif
 
-typedef struct fg_band_pixel {
-  float across_px; /* signed distance from the reference line, along its normal */
-  float value;     /* 8-bit counts */
-  int32_t station; /* station whose step contains it */
-} fg_band_pixel;
-
+/* Pixels of stations [first, first + stations), those of one station after those of the station
+ * before it: its are [begin[k], begin[k + 1]) with k counted from `first`. */
 typedef struct fg_pixel_band {
-  fg_band_pixel *pixels; /* in the order of their stations; owned */
-  size_t count, capacity;
+  size_t first, stations;
+  size_t *begin;    /* stations + 1; owned */
+  float *across_px; /* signed distance from the reference line, along its normal; owned */
+  float *value;     /* 8-bit counts; in the block of across_px */
+  size_t count;     /* number of pixels */
 } fg_pixel_band;
 
 /* All pixels within reach_px of the line that belong to stations [first, last]. Pixels that were

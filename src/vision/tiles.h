@@ -109,16 +109,19 @@ static inline float fg_tiles_block(const fg_tiles *tiles, int32_t x, int32_t y) 
   return tile->blocks[y % FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE + x % FG_BLOCKS_PER_TILE];
 }
 
-/* The pixel's value in 8-bit counts (16-bit data are divided by 257), NaN where it is not kept or
- * outside the scan. */
+/* A tile's pixel, counted row by row, in 8-bit counts (16-bit data are divided by 257). */
+static inline float fg_tile_value(const fg_tiles *tiles, const fg_tile *tile, size_t at) {
+  if (tiles->bytes_per_pixel == 1) return (float)tile->pixels[at];
+  return (float)((const uint16_t *)(const void *)tile->pixels)[at] * (1.0f / 257.0f);
+}
+
+/* The pixel's value in 8-bit counts, NaN where it is not kept or outside the scan. */
 static inline float fg_tiles_pixel(const fg_tiles *tiles, int64_t x, int64_t y) {
   if (x < 0 || y < 0 || x >= tiles->width_px || y >= tiles->height_px) return NAN;
   size_t ux = (size_t)x, uy = (size_t)y;
   const fg_tile *tile = tiles->tiles[uy / FG_TILE_PX * (size_t)tiles->columns + ux / FG_TILE_PX];
   if (!tile) return NAN;
-  size_t at = uy % FG_TILE_PX * FG_TILE_PX + ux % FG_TILE_PX;
-  if (tiles->bytes_per_pixel == 1) return (float)tile->pixels[at];
-  return (float)((const uint16_t *)(const void *)tile->pixels)[at] * (1.0f / 257.0f);
+  return fg_tile_value(tiles, tile, uy % FG_TILE_PX * FG_TILE_PX + ux % FG_TILE_PX);
 }
 
 #ifdef __cplusplus
