@@ -10,7 +10,7 @@
 #include "scan/png_unfilter.h"
 
 /* A block stays in the processor's second cache from its decompression to its rows' conversion. */
-enum { BLOCK_BYTES = 1 << 17, BLOCKS = 4 };
+enum { BLOCK_BYTES = 1 << 18, BLOCKS = 3 };
 /* Bytes decompressed before the start of a thread is worth it. */
 #define BESIDE_BYTES_MIN ((size_t)1 << 20)
 
