@@ -106,21 +106,30 @@ static void sum_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count, 
     sum_rows_16((const uint16_t *)(const void *)rows, (size_t)tiles->width_px, sums);
 }
 
+/* Means of blocks that lie inside the scan with all their columns, of sums of so many rows. */
+__attribute__((target_clones("avx2", "default"))) static void
+average_whole_blocks(const uint32_t *restrict sums, size_t count, float unit, int64_t rows,
+                     float *restrict out) {
+  float pixels = (float)(FG_BLOCK_PX * rows);
+  for (size_t b = 0; b < count; b++) {
+    const uint32_t *s = sums + b * FG_BLOCK_PX;
+    int32_t sum = (int32_t)(s[0] + s[1] + s[2] + s[3] + s[4] + s[5] + s[6] + s[7]);
+    out[b] = (float)sum * unit / pixels;
+  }
+}
+
 /* Block means of one row of blocks; blocks outside the scan repeat the last one inside. */
 static void average_blocks(const fg_tiles *tiles, const uint32_t *sums, int64_t rows, float *out) {
   float unit = tiles->bytes_per_pixel == 1 ? 1.0f : 1.0f / 257.0f;
-  int32_t count = tiles->columns * FG_BLOCKS_PER_TILE;
-  for (int32_t b = 0; b < count; b++) {
-    int64_t from = (int64_t)b * FG_BLOCK_PX, to = from + FG_BLOCK_PX;
-    if (to > tiles->width_px) to = tiles->width_px;
-    if (from >= to) {
-      out[b] = out[b - 1];
-      continue;
-    }
-    uint64_t sum = 0;
-    for (int64_t x = from; x < to; x++)
+  size_t width = (size_t)tiles->width_px, whole = width / FG_BLOCK_PX;
+  average_whole_blocks(sums, whole, unit, rows, out);
+  for (size_t b = whole; b < blocks_across(tiles); b++) {
+    size_t from = b * FG_BLOCK_PX;
+    uint32_t sum = 0;
+    for (size_t x = from; x < width; x++)
       sum += sums[x];
-    out[b] = (float)sum * unit / (float)((to - from) * rows);
+    out[b] =
+        from < width ? (float)sum * unit / (float)((int64_t)(width - from) * rows) : out[b - 1];
   }
 }
 
