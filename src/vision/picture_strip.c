@@ -117,8 +117,8 @@ typedef struct band_sums {
 
 /* Adds a station's pixels beside its edges. Most pixels lie on the material or in the blur of its
  * edges, nearer than `nearest`: they are passed over first. */
-static void add_station(const fg_edge_work *work, const fg_pixel_band *band, size_t k,
-                        float nearest, band_sums *b) {
+static void add_station_band(const fg_edge_work *work, const fg_pixel_band *band, size_t k,
+                             float nearest, band_sums *b) {
   size_t station = band->first + k, at = 2 * (station / BAND_STATIONS);
   const fg_edge_station *s = &work->stations[station];
   if (!(s->weight > 0)) return;
@@ -138,7 +138,7 @@ static void add_bands(const fg_edge_work *work, band_sums *b) {
   float nearest = (float)fg_band_from(fmin(work->blur_px[0], work->blur_px[1]));
   for (size_t c = 0; c < work->chunk_count; c++)
     for (size_t k = 0; k < work->bands[c].stations; k++)
-      add_station(work, &work->bands[c], k, nearest, b);
+      add_station_band(work, &work->bands[c], k, nearest, b);
 }
 
 static fg_edge_band band_of(const fg_edge_work *work, const band_sums *b, size_t at,
