@@ -58,7 +58,11 @@ static step step_at(const fg_edge_tables *tables, double d, double level, double
   double t = d / blur;
   fg_edge_normal(tables, (float)t, &density, &cumulative);
   double phi = density, cum = cumulative;
-  step s;
+  step s = {0};
+  /* Beyond the table's reach the step is whole, or none. */
+  if (phi == 0 && cum == 0) return s;
+  if (phi == 0 && cum == 1)
+    return (step){level + slope * d - plateau, .by_distance = slope, .by_level = 1, .by_slope = d};
   s.value = (level + slope * d - plateau) * cum + slope * blur * phi;
   s.by_distance = slope * cum + (level - plateau) * phi / blur;
   s.by_level = cum;
