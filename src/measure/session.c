@@ -214,8 +214,8 @@ static void free_job(job *j) {
 /* Puts the island on tiles of its own. */
 static fg_status anchor_job(fg_context *ctx, fg_session *s, job *j) {
   const fg_anchor_options options = {.min_px = min_object_px(s->measurement),
-                                     .border_px =
-                                         BORDER_WIDTHS * expected_width_px(s->measurement)};
+                                     .border_px = BORDER_WIDTHS * expected_width_px(s->measurement),
+                                     .threads = s->threads};
   fg_anchored a;
   FG_TRY(fg_anchor_island(ctx, &j->view, &j->island, &options, &a));
   if (!a.anchored) return FG_OK;

@@ -77,6 +77,7 @@ static void free_sheet(work *w) {
 
 /* Cuts the sheet up to the island's end, with the margin that hot pixels need. */
 static fg_status cut_sheet(fg_context *ctx, work *w, const int64_t low_px[2]) {
+  fg_sheet_place place;
   int32_t size[2];
   const int32_t end[2] = {w->island->x + w->island->width, w->island->y + w->island->height};
   free_sheet(w);
@@ -85,7 +86,8 @@ static fg_status cut_sheet(fg_context *ctx, work *w, const int64_t low_px[2]) {
     int64_t length_px = (int64_t)end[k] * FG_TILE_PX - low_px[k];
     size[k] = (int32_t)(length_px / FG_TILE_PX) + 2 + 2 * MARGIN_TILES;
   }
-  FG_TRY(fg_sheet_cut(ctx, w->tiles, w->corner_px, size[0], size[1], &w->sheet));
+  place = (fg_sheet_place){{w->corner_px[0], w->corner_px[1]}, size[0], size[1]};
+  FG_TRY(fg_sheet_cut(ctx, w->tiles, &place, w->options->threads, &w->sheet));
   w->width = size[0] * FG_BLOCKS_PER_TILE;
   w->height = size[1] * FG_BLOCKS_PER_TILE;
   size_t count = (size_t)w->width * (size_t)w->height;

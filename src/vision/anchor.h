@@ -20,6 +20,7 @@ extern "C" {
 typedef struct fg_anchor_options {
   double min_px;    /* diagonal of the smallest object that is no dust */
   double border_px; /* objects nearer to the scan's border may be cut by it */
+  unsigned threads;
 } fg_anchor_options;
 
 typedef struct fg_anchored {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 
 /* A tile of the sheet lies on up to four tiles of the scan: two spans along each axis. */
 typedef struct span {
@@ -131,8 +132,17 @@ static void reduce_blocks(fg_tile *tile, int row, int bytes_per_pixel, uint64_t 
   }
 }
 
-static fg_status cut_tile(fg_context *ctx, const fg_tiles *from, const int64_t corner_px[2],
-                          int32_t column, int32_t row, fg_sheet *sheet) {
+/* A sheet while it is cut: a row of tiles is an item of parallel work. */
+typedef struct cutting {
+  const fg_tiles *from;
+  const fg_sheet_place *place;
+  fg_sheet *sheet;
+} cutting;
+
+static fg_status cut_tile(fg_context *ctx, const cutting *c, int32_t column, int32_t row) {
+  const fg_tiles *from = c->from;
+  const int64_t *corner_px = c->place->corner_px;
+  fg_sheet *sheet = c->sheet;
   span across[2], down[2];
   int columns = find_spans(corner_px[0] + (int64_t)column * FG_TILE_PX, from->width_px, across);
   int rows = find_spans(corner_px[1] + (int64_t)row * FG_TILE_PX, from->height_px, down);
@@ -157,22 +167,26 @@ static fg_status cut_tile(fg_context *ctx, const fg_tiles *from, const int64_t c
   return FG_OK;
 }
 
-fg_status fg_sheet_cut(fg_context *ctx, const fg_tiles *from, const int64_t corner_px[2],
-                       int32_t columns, int32_t rows, fg_sheet *sheet) {
+static fg_status cut_row(fg_context *ctx, void *shared, size_t row) {
+  const cutting *c = shared;
+  for (int32_t column = 0; column < c->place->columns; column++)
+    FG_TRY(cut_tile(ctx, c, column, (int32_t)row));
+  return FG_OK;
+}
+
+fg_status fg_sheet_cut(fg_context *ctx, const fg_tiles *from, const fg_sheet_place *place,
+                       unsigned threads, fg_sheet *sheet) {
+  size_t columns = (size_t)place->columns, rows = (size_t)place->rows;
+  cutting c = {from, place, sheet};
   *sheet = (fg_sheet){.tiles = {.budget = from->budget,
-                                .width_px = (int64_t)columns * FG_TILE_PX,
-                                .height_px = (int64_t)rows * FG_TILE_PX,
+                                .width_px = (int64_t)place->columns * FG_TILE_PX,
+                                .height_px = (int64_t)place->rows * FG_TILE_PX,
                                 .bytes_per_pixel = from->bytes_per_pixel}};
   FG_TRY(fg_tiles_allocate(ctx, &sheet->tiles));
-  FG_TRY(fg_memory_allocate(ctx, (size_t)columns * (size_t)rows, sizeof *sheet->whole,
-                            (void **)&sheet->whole));
-  FG_TRY(fg_memory_allocate(
-      ctx, (size_t)columns * (size_t)rows * FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
-      sizeof *sheet->ranges, (void **)&sheet->ranges));
-  for (int32_t row = 0; row < rows; row++)
-    for (int32_t column = 0; column < columns; column++)
-      FG_TRY(cut_tile(ctx, from, corner_px, column, row, sheet));
-  return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, columns * rows, sizeof *sheet->whole, (void **)&sheet->whole));
+  FG_TRY(fg_memory_allocate(ctx, columns * rows * FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
+                            sizeof *sheet->ranges, (void **)&sheet->ranges));
+  return fg_parallel_run(ctx, threads, rows, cut_row, &c);
 }
 
 void fg_sheet_free(fg_sheet *sheet) {

@@ -18,10 +18,16 @@ typedef struct fg_sheet {
   fg_range *ranges; /* of each tile's blocks, as in fg_tile */
 } fg_sheet;
 
-/* Cuts columns × rows of tiles. FG_ERR_MEMORY; FG_ERR_DATA beyond the budget. The caller frees the
- * sheet, also after an error. */
-fg_status fg_sheet_cut(fg_context *ctx, const fg_tiles *from, const int64_t corner_px[2],
-                       int32_t columns, int32_t rows, fg_sheet *sheet);
+/* Place of a sheet: its corner, on the tiles it is cut from, and its size in tiles. */
+typedef struct fg_sheet_place {
+  int64_t corner_px[2];
+  int32_t columns, rows;
+} fg_sheet_place;
+
+/* Cuts a sheet on up to `threads` threads. FG_ERR_MEMORY; FG_ERR_DATA beyond the budget. The caller
+ * frees the sheet, also after an error. */
+fg_status fg_sheet_cut(fg_context *ctx, const fg_tiles *from, const fg_sheet_place *place,
+                       unsigned threads, fg_sheet *sheet);
 void fg_sheet_free(fg_sheet *sheet);
 
 #endif
