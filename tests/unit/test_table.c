@@ -326,6 +326,16 @@ static void words_that_count_are_numbers(void **state) {
       {{"2100-02-28", "2100-03-01", "2100-02-27", "2100-02-26"}, 2, 0},
       {{"31.12.2023", "01.01.2024", "01.03.2024", "29.02.2024"}, 0, 60},
       {{"2024-05-01T06:00", "2024-05-01 18:00:36", "2024-05-02", "2024-05-02T12:00Z"}, 0, 1.25},
+      {{"2/3/2026 8:15 AM", "02/28/2026 12:15 PM", "3/1/26 12:15 AM", "03/01/2026 8:15 PM"},
+       0,
+       26.5},
+      {{"28/02/2026", "1/3/2026", "2/3/2026", "31/03/2026"}, 0, 31},
+      {{"31-Dec-2025", "1-Jan-2026", "", "1-Mrz-26"}, 0, 60},
+      {{"\"May 31, 2024\"", "June 2 2024", "3 Juni 2024", "4. Okt. 2024"}, 0, 126},
+      {{"31.12.25", "01.01.26", "02.01.26", "03.01.26"}, 0, 3},
+      {{"2026/02/28", "2026/03/01", "2026/03/02", "2026/03/03"}, 0, 3},
+      {{"31/02/2026", "1/3/2026", "2/3/2026", "30/03/2026"}, NAN, NAN},
+      {{"1/3/2026 13:15 PM", "1/3/2026", "2/3/2026", "30/03/2026"}, NAN, NAN},
       {{"F001", "F002", "", "F010"}, 1, 10},
       {{"2023-02-29", "2023-03-01", "2023-03-02", "2023-03-03"}, NAN, NAN},
       {{"03/04/2024", "04/04/2024", "05/04/2024", "06/04/2024"}, NAN, NAN},
@@ -347,7 +357,7 @@ static void words_that_count_are_numbers(void **state) {
     assert_ok(&ctx, fg_table_count_words(&ctx, &table, 2, &said));
     assert_ok(&ctx, fg_table_find(&ctx, &table, "w", &w));
     assert_int_equal(w->word_count == 0, isfinite(cases[i].first));
-    assert_int_equal(said != NULL, isfinite(cases[i].first));
+    assert_int_equal(said && strstr(said, " counts "), isfinite(cases[i].first));
     if (isfinite(cases[i].first)) {
       assert_true(fabs(w->number[0].value - cases[i].first) < 1e-9);
       assert_true(fabs(w->number[3].value - cases[i].last) < 1e-9);
