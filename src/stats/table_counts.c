@@ -155,6 +155,21 @@ static fg_status count_digits(fg_context *ctx, const fg_table *table, fg_column 
                         earliest);
 }
 
+/* The order that is asked for cannot be counted. Other words than dates are refused where they are
+ * used. */
+static fg_status refuse_order(fg_context *ctx, const fg_table *table, const fg_column *column) {
+  char *words = NULL;
+  double *values = NULL;
+  FG_TRY(fg_memory_allocate(ctx, column->word_count, sizeof *values, (void **)&values));
+  fg_date_reading reading = fg_table_read_dates(table, column, values);
+  free(values);
+  if (reading != FG_DATES_AMBIGUOUS) return FG_OK;
+  fg_status status = say_ambiguous(ctx, column, &words);
+  if (status == FG_OK) status = fg_fail(ctx, FG_ERR_DATA, "%s: column %s", table->source, words);
+  free(words);
+  return status;
+}
+
 fg_status fg_table_count_times(fg_context *ctx, fg_table *table, const char *order,
                                const char **times, char **said) {
   size_t counted = 0;
@@ -167,6 +182,7 @@ fg_status fg_table_count_times(fg_context *ctx, fg_table *table, const char *ord
     if (column->word_count < 2 || column->number_count || column->uncertainty) continue;
     if (recur && !meant) continue;
     FG_TRY(count_moments(ctx, table, column, &moments, said));
+    if (meant && column->word_count) FG_TRY(refuse_order(ctx, table, column));
     if (moments) *times = ++counted == 1 && !column->missing_count ? column->name : NULL;
   }
   return FG_OK;

@@ -10,6 +10,10 @@
 /* Rows from which on their order tells day from month: by chance one in 720 orders of six rises. */
 enum { ROWS_THAT_TELL = 6 };
 
+/* Times as many days, from which on a span of the dates is not believed: days of one month, as runs
+ * have them, are one day of many months in the other order. */
+#define CLOSE 10.0
+
 bool fg_table_words_in_order(const fg_table *table, const fg_column *column, const double *values) {
   double last = NAN;
   bool up = false, down = false;
@@ -40,16 +44,34 @@ static bool order_matters(const fg_column *column) {
   return false;
 }
 
-/* Both orders are possible: does one of them alone have the rows in order of time? */
+static double span_of(const double *values, size_t count) {
+  double first = INFINITY, last = -INFINITY;
+  for (size_t i = 0; i < count; i++) {
+    first = fmin(first, values[i]);
+    last = fmax(last, values[i]);
+  }
+  return last - first;
+}
+
+/* Both orders are possible: does one of them alone have the rows in order of time, or the dates in
+ * far fewer days? */
 static fg_date_reading read_by_rows(const fg_table *table, const fg_column *column,
                                     double *values) {
   bool day_first = fg_table_words_in_order(table, column, values);
+  double day_span = span_of(values, column->word_count);
   read_all(column, FG_DATE_MONTH_FIRST, values);
   bool month_first = fg_table_words_in_order(table, column, values);
-  if (day_first == month_first || column->word_count < ROWS_THAT_TELL) return FG_DATES_AMBIGUOUS;
-  if (month_first) return FG_DATES_ROWS_MONTH_FIRST;
-  read_all(column, FG_DATE_DAY_FIRST, values);
-  return FG_DATES_ROWS_DAY_FIRST;
+  double month_span = span_of(values, column->word_count);
+  fg_date_reading reading = FG_DATES_AMBIGUOUS;
+  if (day_first != month_first && column->word_count >= ROWS_THAT_TELL)
+    reading = day_first ? FG_DATES_ROWS_DAY_FIRST : FG_DATES_ROWS_MONTH_FIRST;
+  else if (day_span > CLOSE * month_span)
+    reading = FG_DATES_SPAN_MONTH_FIRST;
+  else if (month_span > CLOSE * day_span)
+    reading = FG_DATES_SPAN_DAY_FIRST;
+  if (reading == FG_DATES_ROWS_DAY_FIRST || reading == FG_DATES_SPAN_DAY_FIRST)
+    read_all(column, FG_DATE_DAY_FIRST, values);
+  return reading;
 }
 
 fg_date_reading fg_table_read_dates(const fg_table *table, const fg_column *column,
@@ -74,6 +96,10 @@ const char *fg_table_date_words(fg_date_reading reading) {
     return ", read with the day first, which has the rows in order of time";
   case FG_DATES_ROWS_MONTH_FIRST:
     return ", read with the month first, which has the rows in order of time";
+  case FG_DATES_SPAN_DAY_FIRST:
+    return ", read with the day first, which has them close together";
+  case FG_DATES_SPAN_MONTH_FIRST:
+    return ", read with the month first, which has them close together";
   default:
     return "";
   }

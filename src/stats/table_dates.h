@@ -10,10 +10,12 @@
 typedef enum fg_date_reading {
   FG_DATES_NONE, /* the words are no dates */
   FG_DATES_PLAIN,
-  FG_DATES_DAY_FIRST,      /* some date cannot have its month first */
-  FG_DATES_MONTH_FIRST,    /* some date cannot have its day first */
-  FG_DATES_ROWS_DAY_FIRST, /* both are possible, and the day first has all rows in order of time */
-  FG_DATES_ROWS_MONTH_FIRST, /* the month first has */
+  FG_DATES_DAY_FIRST,        /* some date cannot have its month first */
+  FG_DATES_MONTH_FIRST,      /* some date cannot have its day first */
+  FG_DATES_ROWS_DAY_FIRST,   /* both are possible, and day first has all rows in order of time */
+  FG_DATES_ROWS_MONTH_FIRST, /* month first has */
+  FG_DATES_SPAN_DAY_FIRST,   /* both are possible, and day first has all dates close together */
+  FG_DATES_SPAN_MONTH_FIRST, /* month first has */
   FG_DATES_AMBIGUOUS         /* both are possible, and nothing decides */
 } fg_date_reading;
 

@@ -46,6 +46,11 @@ static void moments_are_counted(void **state) {
        "with the month first",
        150,
        true},
+      {{"02/03/2026 8:15 AM", "02/03/2026 1:15 PM", "02/04/2026 7:15 AM", "02/05/2026 8:15 AM",
+        "02/05/2026 9:15 AM", "02/06/2026 8:15 AM"},
+       "with the month first, which has them close together",
+       3,
+       true},
       {{"20260305", "20260301", "20260304", "20260302", "20260309", "20260307"},
        "days since 20260301",
        6,
@@ -63,7 +68,7 @@ static void moments_are_counted(void **state) {
     fg_context ctx = {0};
     fg_table table;
     const fg_column *w = NULL;
-    char text[200], *said = NULL;
+    char text[300], *said = NULL;
     const char *times = NULL, *const *cell = cases[i].cells;
     snprintf(text, sizeof text, "x,date\n1,%s\n2,%s\n3,%s\n4,%s\n5,%s\n6,%s\n", cell[0], cell[1],
              cell[2], cell[3], cell[4], cell[5]);
