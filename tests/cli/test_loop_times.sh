@@ -70,6 +70,10 @@ finds daily 'names == ["table.periodic(time)"] and abs(j["claims"][0]["parameter
 # Few moments are an order, too, and so are those with the month first where a row tells.
 finds few 'names == ["table.order_drift(date)"] and "date counts days since 2026-03-" in said'
 finds us 'names == ["table.order_drift(date)"] and "read with the month first" in said'
+# The summary's errors have the response's unit.
+sed 's/y$/y_um/' few.csv >few_um.csv
+"$program" loop few_um.csv --response y_um --model 1 -o report.json || fail "few_um: exit $?"
+grep -Eq '"summary": .*The error falls from [0-9.]+ to [0-9.]+ µm;' report.json || fail "the summary's errors have no unit"
 expect 65 'date is not counted as time: dates such as 03/04/2026 may have the day or the month first' \
   "$program" loop both.csv --response y --model 1 --order date
 # Oddities that no model sees are told.
