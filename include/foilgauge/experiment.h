@@ -62,6 +62,7 @@ typedef struct fg_experiment_options {
   const char *block;       /* column that names the blocks; NULL: none */
   const char *whole_plot;  /* column that names the whole plots; NULL: none */
   const char *uncertainty; /* column with the response's standard uncertainty; NULL: none */
+  const char *reading;     /* how cells of the runs were read, as a note; NULL: as they stand */
   double confidence;       /* 0: FG_EXPERIMENT_CONFIDENCE */
   fg_goal goal;
   double target;                 /* FG_GOAL_TARGET: the response wanted */

@@ -116,7 +116,7 @@ typedef struct fg_loop_problem {
   bool exchangeable; /* rows are single responses: one may be an outlier, two may be exchanged */
   bool few; /* too few groups for curves or tests of the scatter: listed effects of the mean only;
                the caller tests the claims by other means */
-  double *response; /* rows, for exchanged runs: the measured response */
+  double *response;        /* rows, for exchanged runs: the measured response */
   const size_t *table_row; /* rows: of the caller's table, from 0, for names; NULL: the same */
   double origin; /* subtracted from every residual; the constant of the declared model, of value 1,
                     is larger by it */
@@ -272,6 +272,7 @@ typedef struct fg_loop_claim {
   size_t columns;
   double shape[FG_LOOP_SHAPES], shape_u[FG_LOOP_SHAPES];
   double coefficient[FG_LOOP_COLUMNS], coefficient_u[FG_LOOP_COLUMNS];
+  double slopes_u; /* of the difference between the largest and the smallest slope of levels */
   fg_loop_order_fit order[FG_LOOP_ORDERS];
   size_t orders;      /* of a cycle */
   double amplitude;   /* half the range of the effect over the rows, response's unit */

@@ -114,10 +114,11 @@ void fg_levels_free(fg_levels *levels);
 /* Takes a column out. FG_ERR_DATA with the names that there are. */
 fg_status fg_table_drop(fg_context *ctx, fg_table *table, const char *name);
 
-/* Makes words that count numbers: dates (2024-05-31, 31.05.2024, a time of day behind them or not)
- * become days since the earliest of their column; more than `most` different words that differ in
- * the digits at their end only (F001, F002 ...) these digits. `said` (appended to; may be NULL at
- * first) tells which columns and how; the caller frees it. */
+/* Makes words that count numbers: dates (2024-05-31, 31.05.2024, 31-May-2024, those of the whole
+ * column that tell day from month in 5/31/2024; a time of day behind them or not) become days since
+ * the earliest of their column; more than `most` different words that differ in the digits at their
+ * end only (F001, F002 ...) these digits. `said` (appended to; may be NULL at first) tells which
+ * columns and how; the caller frees it. */
 fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t max, char **said);
 
 /* A copy that may be changed. */

@@ -54,6 +54,7 @@ typedef struct doe_run {
   fg_table sheet;
   fg_design design; /* of the scans */
   fg_run_sheet measured;
+  char *said; /* how dates were read */
   char *u_name;
   fg_doe_plan plan;
   fg_experiment experiment;
@@ -338,13 +339,12 @@ static fg_status describe_taken(fg_context *ctx, doe_run *run) {
   return FG_OK;
 }
 
-/* Moments are numbers, as they were to the loop that made the model. */
-static fg_status count_times(fg_context *ctx, fg_table *table) {
+/* Moments are numbers, as they are to the loop: a trend, and no level in every row. */
+static fg_status count_times(fg_context *ctx, doe_run *run, fg_table *table) {
   fg_loop_table_spec spec = {0};
-  char *said = NULL;
-  fg_status status = fg_loop_table_count_times(ctx, table, &spec, &said);
-  free(said);
-  return status;
+  FG_TRY(fg_loop_table_count_times(ctx, table, &spec, &run->said));
+  run->arguments.options.reading = run->said;
+  return FG_OK;
 }
 
 /* The effects of a model file are taken out of the response, and its formula is the one to analyse.
@@ -358,7 +358,6 @@ static fg_status apply_loop_model(fg_context *ctx, doe_run *run, fg_table *table
   if (run->arguments.options.response && strcmp(run->arguments.options.response, response) != 0)
     return fg_fail(ctx, FG_ERR_DATA, "%s: a model of the response '%s', not of '%s'", name,
                    response, run->arguments.options.response);
-  FG_TRY(count_times(ctx, table));
   FG_TRY(fg_loop_model_take(ctx, run->loop_model, table, &run->takings));
   run->arguments.options.formula = fg_loop_model_formula(run->loop_model);
   return describe_taken(ctx, run);
@@ -375,12 +374,13 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   FG_TRY(fg_table_load(ctx, a->data, &run->sheet, run->sha256));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
-  FG_TRY(apply_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));
+  fg_table *runs = a->scans ? &run->measured.table : &run->sheet;
+  FG_TRY(count_times(ctx, run, runs));
+  FG_TRY(apply_loop_model(ctx, run, runs));
   const fg_doe_plan_request plan = {a->plan_path, a->data,   &run->sheet,
                                     &a->options,  a->coding, a->round};
   FG_TRY(fg_doe_plan_find(ctx, &plan, &run->plan));
-  FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
-                               &run->experiment));
+  FG_TRY(fg_experiment_analyse(ctx, runs, &a->options, &run->experiment));
   return fg_output_set_write(ctx, &run->outputs, write_doe_output, run);
 }
 
@@ -393,6 +393,7 @@ static void free_run(doe_run *run) {
   free(run->taken);
   fg_table_free(&run->sheet);
   free(run->u_name);
+  free(run->said);
   fg_doe_plan_free(&run->plan);
 }
 

@@ -9,6 +9,7 @@
 #include "cli/runs.h"
 #include "foilgauge/forming.h"
 #include "foilgauge/memory.h"
+#include "foilgauge/table_remarks.h"
 #include "foilgauge/text.h"
 
 /* Levels of a column at most. Names with more are no levels of an effect: they may be a count. */
@@ -86,8 +87,8 @@ static fg_status keep_complete_rows(fg_context *ctx, fg_loop_source *source) {
   fg_table_free(table);
   *table = complete;
   FG_TRY_EXIT(name_rows(ctx, source, row, kept));
-  FG_TRY_EXIT(fg_text_append(ctx, &source->said, "left out: %zu of %zu rows, with an empty cell",
-                             rows - kept, rows));
+  FG_TRY_EXIT(fg_text_append(ctx, &source->said, "%sleft out: %zu of %zu rows, with an empty cell",
+                             source->said ? "; " : "", rows - kept, rows));
 exit:
   free(row);
   return status;
@@ -99,6 +100,7 @@ static fg_status read_table(fg_context *ctx, const fg_loop_source_request *reque
   FG_TRY(fg_table_load(ctx, request->table, &source->read, source->sha256));
   source->table = &source->read;
   FG_TRY(drop_columns(ctx, request, &source->read));
+  FG_TRY(fg_table_remark(ctx, &source->read, spec->response, &source->said));
   if (request->complete) FG_TRY(keep_complete_rows(ctx, source));
   return fg_loop_table_count_times(ctx, &source->read, spec, &source->said);
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -25,8 +26,21 @@ static bool is_day(int year, int month, int day) {
          day <= days[month - 1] - (month == 2 && !leap);
 }
 
-/* Time of day after the date, in days; NaN: other text. */
-static double read_time(const char *text) {
+double fg_date_of_day(int year, int month, int day) {
+  return is_day(year, month, day) ? days_of(year, month, day) : NAN;
+}
+
+/* Returns the hour of 24 for one of twelve with AM or PM, which *text moves behind; -1: no such
+ * hour. */
+static int read_half_day(const char **text, int hour) {
+  const char *half = *text + strspn(*text, " ");
+  bool am = !strncasecmp(half, "am", 2), pm = !strncasecmp(half, "pm", 2);
+  if (!am && !pm) return hour;
+  *text = half + 2;
+  return hour < 1 || hour > 12 ? -1 : hour % 12 + (pm ? 12 : 0);
+}
+
+double fg_date_time_of_day(const char *text) {
   int hour, minute, end = 0;
   double second = 0;
   if (!*text) return 0;
@@ -36,6 +50,7 @@ static double read_time(const char *text) {
   text += 1 + end;
   end = 0;
   if (*text == ':' && sscanf(text, ":%9lf%n", &second, &end) == 1) text += end;
+  if ((hour = read_half_day(&text, hour)) < 0) return NAN;
   if (*text == 'Z') text++;
   return *text ? NAN : (hour + (minute + second / 60) / 60) / 24;
 }
@@ -46,7 +61,9 @@ double fg_date_days(const char *text) {
     (void)sscanf(text, "%4d-%2d-%2d%n", &year, &month, &day, &end);
   else
     (void)sscanf(text, "%2d.%2d.%4d%n", &day, &month, &year, &end);
-  return end && is_day(year, month, day) ? days_of(year, month, day) + read_time(text + end) : NAN;
+  return end && is_day(year, month, day)
+             ? days_of(year, month, day) + fg_date_time_of_day(text + end)
+             : NAN;
 }
 
 bool fg_date_is_utc(const char *text) {

@@ -10,9 +10,16 @@
 enum { FG_DATE_TEXT = 24 };
 
 /* Returns days from 1970-01-01, a time of day as their fraction. Formats: 2024-05-31, 31.05.2024,
- * then nothing or " 13:45", "T13:45:10", each with or without a Z. NaN: no date. A date with
- * strokes is no date: it may begin with day or month. */
+ * then nothing or " 13:45", "T13:45:10", each with or without a Z, or " 1:45 PM". NaN: no date. A
+ * date with strokes is no date: it may begin with day or month. */
 double fg_date_days(const char *text);
+
+/* Returns days from 1970-01-01 of a day of the calendar; NaN: no day of 1900 to 2199. */
+double fg_date_of_day(int year, int month, int day);
+
+/* Returns the time of day, in days, that follows a date: "" (0), " 13:45", "T13:45:10Z", " 1:45
+ * PM"; NaN: other text. */
+double fg_date_time_of_day(const char *text);
 
 /* True with a Z: the date is UTC. Others are local, wherever that is. */
 bool fg_date_is_utc(const char *text);

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "core/text.h"
+#include "foilgauge/table_remarks.h"
 #include "process/experiment_parts.h"
 
 /* The lowest and highest number of a column. */
@@ -293,9 +294,21 @@ fg_status fg_experiment_fit(fg_context *ctx, const fg_table *runs,
   return fg_experiment_check_order(ctx, e);
 }
 
+static fg_status note_remarks(fg_context *ctx, const fg_table *runs,
+                              const fg_experiment_options *options, fg_experiment *e) {
+  char *said = NULL;
+  fg_status status = FG_OK;
+  if (options->reading) status = fg_experiment_note(ctx, e, "%s", options->reading);
+  if (status == FG_OK) status = fg_table_remark(ctx, runs, e->response, &said);
+  if (status == FG_OK && said) status = fg_experiment_note(ctx, e, "%s", said);
+  free(said);
+  return status;
+}
+
 static fg_status analyse(fg_context *ctx, const fg_table *runs,
                          const fg_experiment_options *options, fg_experiment *e) {
   FG_TRY(fg_experiment_fit(ctx, runs, options, e));
+  FG_TRY(note_remarks(ctx, runs, options, e));
   FG_TRY(fg_experiment_surface(ctx, options, NULL, e));
   FG_TRY(fg_experiment_reduce(ctx, runs, options, e));
   FG_TRY(fg_experiment_optimise(ctx, options, NULL, e));

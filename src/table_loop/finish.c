@@ -256,6 +256,7 @@ void fg_engine_claim_take_fit(fg_loop_claim *claim, const fg_loop_claim *fit) {
   memcpy(claim->shape_u, fit->shape_u, sizeof fit->shape_u);
   memcpy(claim->coefficient, fit->coefficient, sizeof fit->coefficient);
   memcpy(claim->coefficient_u, fit->coefficient_u, sizeof fit->coefficient_u);
+  claim->slopes_u = fit->slopes_u;
   claim->orders = fit->orders;
   memcpy(claim->order, fit->order, sizeof fit->order);
   claim->amplitude = fit->amplitude;

@@ -28,7 +28,7 @@ static const char *first_column(const fg_table *table, const char *const *names,
 fg_status fg_loop_table_count_times(fg_context *ctx, fg_table *table, fg_loop_table_spec *spec,
                                     char **said) {
   const char *times;
-  FG_TRY(fg_table_count_times(ctx, table, FG_LOOP_COLUMNS, spec->order, &times, said));
+  FG_TRY(fg_table_count_times(ctx, table, spec->order, &times, said));
   if (!spec->order && !spec->group && !first_column(table, order_names, 5)) spec->order = times;
   return FG_OK;
 }

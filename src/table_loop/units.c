@@ -100,6 +100,7 @@ static void restore_error(fg_loop_error *error, int exponent) {
 static void restore_claim(fg_loop_claim *claim, int exponent) {
   restore(claim->coefficient, claim->columns, exponent);
   restore(claim->coefficient_u, claim->columns, exponent);
+  restore(&claim->slopes_u, 1, exponent);
   for (size_t k = 0; k < claim->orders; k++) {
     restore(&claim->order[k].amplitude, 1, exponent);
     restore(&claim->order[k].amplitude_u, 1, exponent);

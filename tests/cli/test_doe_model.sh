@@ -135,6 +135,11 @@ done <<'TABLE'
 65|design.json|runs.csv|y|design.json
 74|missing.json|runs.csv|y|missing.json
 TABLE
+# Dates that hardly recur are a trend in a formula, as they are to the loop, and no level in every row.
+awk 'BEGIN { print "date,T,y"; for (i = 1; i <= 20; i++) printf "%d.3.26,%d,%.3f\n", i, 500 + 50 * (i % 3), 3 + 0.5 * i + 0.01 * ((i * 7) % 5) }' >dated.csv
+expect 0 '' "$program" doe dated.csv --response y --model 'T + date' --code none -o dated.json
+near "slope over days" "$(value dated.json '[c["estimate"] for c in r["coefficients"] if c["name"] == "date"][0]')" 0.5 0.001
+[ "$(value dated.json '"date counts days since 1.3.26" in r["notes"]')" = True ] || fail "the dates' reading is not told"
 expect 64 'response' "$program" doe runs.csv --model better.json
 expect 65 'better.json' "$program" measure runs.csv --model better.json
 

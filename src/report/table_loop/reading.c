@@ -191,25 +191,22 @@ static void read_product(const reading *r) {
                c < 0 ? "lower" : "higher", high, low);
 }
 
-/* Slopes of the levels of a factor, half the change over the number's range; their sum is zero. The
- * u of a difference is at most the sum of both. */
+/* Slopes of the levels of a factor, half the change over the number's range; their sum is zero. */
 static void read_slopes(const reading *r, const fg_loop_coordinate *factor,
                         const fg_loop_coordinate *number) {
   size_t low = 0, high = 0;
-  double slope[FG_LOOP_COLUMNS + 1] = {0}, u[FG_LOOP_COLUMNS + 1] = {0};
+  double slope[FG_LOOP_COLUMNS + 1] = {0};
   size_t last = r->claim->columns;
   for (size_t k = 0; k < last; k++) {
     slope[k] = r->claim->coefficient[k];
-    u[k] = r->claim->coefficient_u[k];
     slope[last] -= slope[k];
-    u[last] += u[k];
   }
   for (size_t k = 1; k <= last; k++) {
     if (slope[k] < slope[low]) low = k;
     if (slope[k] > slope[high]) high = k;
   }
   char range[VALUE_WORDS], ends[VALUE_WORDS], from[VALUE_WORDS], to[VALUE_WORDS];
-  put_difference(r, 2 * (slope[high] - slope[low]), 2 * (u[high] + u[low]), range);
+  put_difference(r, 2 * (slope[high] - slope[low]), 2 * r->claim->slopes_u, range);
   put_ends(number, ends);
   put_place(factor, (double)low, from);
   put_place(factor, (double)high, to);

@@ -17,6 +17,7 @@
 #include "report/table_loop/scale_members.h"
 #include "report/table_loop/suspect_members.h"
 #include "report/table_loop/words.h"
+#include "report/unit_words.h"
 #include "report/value_words.h"
 
 const char *fg_loop_noise_model(const fg_loop_result *result) {
@@ -66,17 +67,22 @@ static fg_status append_claim(fg_context *ctx, const fg_loop_report *report, siz
   return fg_text_append(ctx, text, ".");
 }
 
-/* "falls from 3 to 2", "stays at 3": no change that the digits do not show. */
-static fg_status write_change(fg_context *ctx, double before, double after, char **text) {
+/* "falls from 3 to 2 µm", "stays at 3 µm": no change that the digits do not show. */
+static fg_status write_change(fg_context *ctx, double before, double after, const char *unit,
+                              char **text) {
+  const char *blank = *unit && strcmp(unit, "°") != 0 ? " " : "";
   fg_loop_number first = fg_loop_number_text("%.3g", before);
   fg_loop_number second = fg_loop_number_text("%.3g", after);
-  if (!strcmp(first.text, second.text)) return fg_text_append(ctx, text, "stays at %s", first.text);
-  return fg_text_append(ctx, text, "%s from %s to %s", after < before ? "falls" : "rises",
-                        first.text, second.text);
+  if (!strcmp(first.text, second.text))
+    return fg_text_append(ctx, text, "stays at %s%s%s", first.text, blank, unit);
+  return fg_text_append(ctx, text, "%s from %s to %s%s%s", after < before ? "falls" : "rises",
+                        first.text, second.text, blank, unit);
 }
 
-static fg_status write_errors_before_after(fg_context *ctx, const fg_loop_result *result,
+static fg_status write_errors_before_after(fg_context *ctx, const fg_loop_report *report,
                                            char **text) {
+  const fg_loop_result *result = report->result;
+  const char *unit = fg_unit_of_name(report->spec->response);
   bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
   if (!fg_loop_has_after(result))
     return fg_text_append(ctx, text,
@@ -85,10 +91,10 @@ static fg_status write_errors_before_after(fg_context *ctx, const fg_loop_result
   FG_TRY(fg_text_append(ctx, text,
                         serial ? " With each row predicted from the one before it, the error "
                                : " The error "));
-  FG_TRY(write_change(ctx, result->before.rms, result->after.rms, text));
+  FG_TRY(write_change(ctx, result->before.rms, result->after.rms, unit, text));
   if (isfinite(result->ratio_held_out)) {
     FG_TRY(fg_text_append(ctx, text, "; on rows that took no part in the search it "));
-    FG_TRY(write_change(ctx, result->before.held_out_rms, result->after.held_out_rms, text));
+    FG_TRY(write_change(ctx, result->before.held_out_rms, result->after.held_out_rms, unit, text));
   }
   return fg_text_append(ctx, text, ".");
 }
@@ -138,9 +144,10 @@ static fg_status append_shown(fg_context *ctx, const fg_loop_result *result, cha
 /* Appends the effects sought without success, of which there was a candidate. */
 static fg_status append_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
+  const char *unit = fg_unit_of_name(report->spec->response);
   size_t said = 0;
-  FG_TRY(fg_text_append(ctx, text, "Nothing is claimed: in %zu rows the residual (%.3g rms) ",
-                        report->problem->problem.rows, result->before.rms));
+  FG_TRY(fg_text_append(ctx, text, "Nothing is claimed: in %zu rows the residual (%.3g%s%s rms) ",
+                        report->problem->problem.rows, result->before.rms, *unit ? " " : "", unit));
   FG_TRY(append_noise(ctx, report, text));
   for (size_t i = 0; i < result->rejects; i++)
     if (is_first(result, i))
@@ -184,7 +191,7 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
                           fg_loop_p_text(result->curve.p_value).text));
   if (result->fails) FG_TRY(append_failed(ctx, report, text));
   bool nothing = !result->claims && !result->has_curve;
-  return nothing ? FG_OK : write_errors_before_after(ctx, result, text);
+  return nothing ? FG_OK : write_errors_before_after(ctx, report, text);
 }
 
 static void write_errors(const fg_loop_report *report, FILE *out) {
