@@ -199,7 +199,8 @@ static void intervals_are_exact(void **state) {
 static void uncertainty_is_a_share_of_its_own(void **state) {
   (void)state;
   fg_context ctx;
-  fg_stock stock = made_stock(9, 0.05, 0.03);
+  /* Of 60 foils some have their smallest clearance within U of the limit. */
+  fg_stock stock = made_stock(60, 0.05, 0.03);
   fg_assembly_plan plan = made_plan(1000, 1);
   fg_assembly_result r;
   assert_ok(&ctx, fg_assembly_draw(&ctx, &stock, &plan, false, &r));
