@@ -9,7 +9,7 @@
 #include "support/random.h"
 #include "support/test.h"
 
-enum { AZIMUTHS_MAX = 12, SEEDS = 1000 };
+enum { AZIMUTHS_MAX = 12, SEEDS = 4000 };
 static const double u_mm = 0.001;
 
 /* A bearing's clearance: mean, orders 2 and 4, and where its order 2 is smallest. */
@@ -106,7 +106,8 @@ static void expanded_uncertainty_holds_the_truth(void **state) {
       inside += fabs(remainder(found.min_at_deg - truth, 180)) <= 2 * found.u_min_at_deg;
     }
     assert_in_range(named, SEEDS * 97 / 100, SEEDS);
-    assert_in_range(inside, named * 93 / 100, named * 98 / 100);
+    /* 93.4 % of 20,000 draws of the weakest order (rows[3]), 95 to 97 % of the others. */
+    assert_in_range(inside, named * 92 / 100, named * 98 / 100);
   }
 }
 
