@@ -129,18 +129,18 @@ typedef struct fg_split_plot {
    * model's columns, onto those that the whole plots make; columns × columns, owned. NULL: the
    * strata are not orthogonal and nothing tells the scatter. */
   double *of_plots;
-  size_t taken_plots,
-      taken_runs; /* dof that fg_split_plot_subtract_dof subtracted from each stratum */
+  /* Dof that fg_split_plot_subtract_dof subtracted from each stratum. */
+  size_t subtracted_from_plots, subtracted_from_runs;
 } fg_split_plot;
 /* `plot` is the column that names whole plots. FG_ERR_DATA when it holds one name only, or as many
  * as runs. Free with fg_split_plot_free. */
 fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg_formula *formula,
                                 const char *response, const char *plot, fg_split_plot *result);
 /* Lowers the error's dof by `dof` parameters that were estimated from these runs and subtracted
- * from the response (`taken`, by row): the dof of the whole plots where the subtracted part is
+ * from the response (`subtracted`, by row): the dof of the whole plots where the subtracted part is
  * constant within each plot, else those of the runs. FG_ERR_DATA when none is left. */
 fg_status fg_split_plot_subtract_dof(fg_context *ctx, const fg_table *table, const char *plot,
-                                     size_t dof, const double *taken, fg_split_plot *result);
+                                     size_t dof, const double *subtracted, fg_split_plot *result);
 void fg_split_plot_free(fg_split_plot *result);
 
 #ifdef __cplusplus

@@ -39,8 +39,8 @@ typedef enum fg_experiment_sign {
   FG_SIGN_MAGNITUDE,
 } fg_experiment_sign;
 
-/* Effect of a loop's model that was subtracted from the response before the analysis. */
-typedef struct fg_experiment_taken {
+/* Effect of a loop's model, which is subtracted from the response before the analysis. */
+typedef struct fg_subtracted_effect {
   char id[64], words[400];       /* "table.linear", "a trend with humidity" */
   char sentence[1000];           /* with its effect on the response; empty: unknown */
   double amplitude, u_amplitude; /* half its range in its own data, and the standard uncertainty */
@@ -48,7 +48,7 @@ typedef struct fg_experiment_taken {
   double low, high;              /* range of the part subtracted from these runs */
   bool applied;       /* false: it belongs to single rows of its own table and is not subtracted */
   char column[2][96]; /* of the table, that it is over; empty: none */
-} fg_experiment_taken;
+} fg_subtracted_effect;
 
 #define FG_EXPERIMENT_CONFIDENCE 0.95 /* default level of intervals */
 
@@ -73,9 +73,9 @@ typedef struct fg_experiment_options {
   size_t ats;
   const fg_rounding *round; /* steps that the best setting is rounded to */
   size_t rounds;
-  const fg_experiment_taken *taken; /* effects already subtracted from the response */
-  size_t takens;
-  const double *taken_out; /* rows: their sum; NULL without `taken` */
+  const fg_subtracted_effect *subtracted; /* from the response, already */
+  size_t subtracted_count;
+  const double *subtracted_sum; /* rows: sum of those effects; NULL without any */
 } fg_experiment_options;
 
 /* A numeric factor of the model. */
@@ -160,6 +160,45 @@ typedef struct fg_simultaneous {
   double dof, run_dof, factor, run_factor; /* coverage factors in the middle of the region */
 } fg_simultaneous;
 
+/* Effects that were subtracted from the response. */
+typedef struct fg_experiment_subtracted {
+  fg_subtracted_effect *effects;
+  size_t count, dof; /* dof: their parameters, by which the residual dof is lowered */
+  double *sum;       /* rows; NULL: nothing was subtracted */
+} fg_experiment_subtracted;
+
+/* Uncertainty of the responses by their measurement, and the weights of the runs by it. */
+typedef struct fg_experiment_measurement {
+  double *u;         /* rows; NULL: not known */
+  double u_rms;      /* NaN: not known */
+  double process_sd; /* scatter besides the measurement's; NaN: not separated */
+  double *weight;    /* rows: 1 / (process² + u²) over the median; NULL: all equal */
+  /* Sums that the dof of the weighted runs come from: see src/process/experiment_weights.c. */
+  double *weight_gram, weight_trace;
+} fg_experiment_measurement;
+
+/* Factors that are not significant. */
+typedef struct fg_idle_factors {
+  fg_idle_factor factor[FG_FORMULA_VARIABLES];
+  size_t count;
+  bool all; /* no factor of the model is significant */
+} fg_idle_factors;
+
+/* Best setting of the surface for a goal. */
+typedef struct fg_best_setting {
+  fg_goal goal;
+  double target; /* FG_GOAL_TARGET: the response wanted */
+  bool found;
+  fg_optimum optimum;
+  double levels[FG_FORMULA_VARIABLES]; /* of word factors */
+  /* Best feasible setting near the optimum: every factor with a step at a multiple of it, all in
+   * the region. */
+  bool has_rounded;
+  double step[FG_SURFACE_FACTORS]; /* of the surface's factors; 0: not rounded */
+  fg_optimum rounded;
+  fg_ridge_point ridge[FG_RIDGE_POINTS];
+} fg_best_setting;
+
 typedef struct fg_experiment fg_experiment;
 struct fg_experiment {
   fg_table table;           /* as analysed: coded, sign applied */
@@ -174,18 +213,10 @@ struct fg_experiment {
   fg_factor factor[FG_FORMULA_VARIABLES];
   size_t factors;
   double *setting; /* rows × model.formula.variables: every run for predictions */
-  double *u;       /* rows: of the response; NULL: not known */
-  double u_rms;    /* NaN: not known */
-  double *weight;  /* rows: 1 / (process² + u²) over the median; NULL: all equal */
-  double *weight_gram, weight_trace; /* how well the weighted runs tell the scatter: see
-                                        src/process/experiment_weights.c */
-  double process_sd;                 /* scatter besides the measurement's; NaN: not separated */
-  fg_experiment_taken *taken;
-  size_t takens,
-      dof_taken;     /* parameters of subtracted effects, by which the residual dof is lowered */
-  double *taken_out; /* rows; NULL: nothing was subtracted */
+  fg_experiment_measurement measurement;
+  fg_experiment_subtracted subtracted;
 
-  bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
+  bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_order;
   fg_lenth lenth; /* of fg_experiment_effect.contrast */
   fg_box_cox box_cox;
   fg_curvature curvature;
@@ -193,30 +224,17 @@ struct fg_experiment {
   fg_surface surface;
   bool stationary_inside;   /* inside the region */
   fg_prediction stationary; /* at the stationary point */
-  bool has_order;
   fg_order_check order;
   double *order_value;
-  fg_goal goal;
-  double target;
   fg_region region;  /* box and ball of the runs, and the constraints */
   char **constraint; /* as given */
   size_t constraints;
   fg_simultaneous simultaneous;
-  double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
-  fg_optimum optimum;
-  /* Best feasible setting near the optimum: every factor with a step at a multiple of it, all in
-   * the region. */
-  bool has_rounded;
-  double step[FG_SURFACE_FACTORS]; /* of the surface's factors; 0: not rounded */
-  fg_optimum rounded;
-  fg_ridge_point ridge[FG_RIDGE_POINTS];
+  fg_best_setting best;
 
-  /* Factors that are not significant, and the experiment without them, which has the best setting.
-   * NULL: all are significant, or none is. Without `reduced` the optimum is that of the model as
-   * given. */
-  fg_idle_factor idle[FG_FORMULA_VARIABLES];
-  size_t idles;
-  bool all_idle; /* no factor of the model is significant */
+  fg_idle_factors idle;
+  /* The experiment without the idle factors, which has the best setting then; NULL: all factors are
+   * significant, or none is. */
   fg_experiment *reduced;
 
   fg_asked *asked;
@@ -247,7 +265,8 @@ const fg_optimum *fg_experiment_best_point(const fg_experiment *experiment);
 
 /* Returns true for a subtracted effect that is over factors of the model alone: the response at a
  * setting has it, and the model of the remainder predicts none. */
-bool fg_experiment_is_of_factors(const fg_experiment *experiment, const fg_experiment_taken *taken);
+bool fg_experiment_is_of_factors(const fg_experiment *experiment,
+                                 const fg_subtracted_effect *effect);
 
 /* Returns the p value to judge a column by: its own, or Lenth's where no error is known; NaN:
  * neither. */

@@ -312,17 +312,30 @@ typedef enum fg_orientation {
   FG_COUNTERCLOCKWISE,
 } fg_orientation;
 
+/* The thickness in force is the one stated from a micrometer, else the scan's. */
+typedef struct fg_foil_thickness_values {
+  double mm, u_mm; /* in force */
+  double scan_mm, u_scan_mm;
+  double
+      u_tone_mm; /* part of u_scan_mm by the level of the edges: common to all foils of a scanner */
+} fg_foil_thickness_values;
+
+/* Scatter of a foil's edges about its circles. */
+typedef struct fg_foil_noise {
+  double sd_um;          /* of the midline residuals over all arcs */
+  double correlation_mm; /* integral length of their autocorrelation along the strip */
+  double edge_model_um;  /* systematic part, by the variation of the half width */
+  double edge_rough_um;  /* kind arc: sd of one edge beyond its pixels' noise */
+} fg_foil_noise;
+
 typedef struct fg_foil {
   int number;         /* reading order in the scan, from 1 */
   double place_mm[4]; /* its box in the scan: x, y, width, height */
   unsigned flags;     /* fg_foil_flag */
   char error[256]; /* reason why it was not measured as a foil of the design; empty when it was */
   fg_orientation orientation;
-  double rotation_deg;                 /* direction of the foil's middle seen from O */
-  double thickness_mm, u_thickness_mm; /* in force: stated from a micrometer, else the scan's */
-  double thickness_scan_mm, u_thickness_scan_mm;
-  double
-      u_thickness_tone_mm; /* of it by the level of the edges: common to all foils of a scanner */
+  double rotation_deg; /* direction of the foil's middle seen from O */
+  fg_foil_thickness_values thickness;
   fg_overall overall;
   fg_foil_arc arc;
   fg_bump *bumps; /* in order of number; owned */
@@ -331,10 +344,7 @@ typedef struct fg_foil {
   size_t beam_count;
   fg_strip strip;           /* the edges; owned; kind cantilever: its box alone */
   fg_station_label *labels; /* strip.count entries; owned */
-  double noise_um;          /* sd of the midline residuals over all arcs */
-  double correlation_mm;    /* integral length of their autocorrelation along the strip */
-  double edge_model_um;     /* systematic part, by the variation of the half width */
-  double edge_rough_um;     /* kind arc: sd of one edge beyond its pixels' noise */
+  fg_foil_noise noise;
   fg_correction correction; /* by a scanner's model */
   /* By a scanner's model or a loop: the corrections made, and those left out. */
   fg_correction_choice choice[FG_CORRECTED];
@@ -385,21 +395,14 @@ typedef struct fg_measurement {
   char date[11];         /* local, of the file's last change, "2026-11-20"; "": not known */
   char model_sha256[65]; /* of the scanner's model that corrected it; "": none */
   const struct fg_scanner_model *model; /* the model; not owned; NULL: none */
-  int64_t width_px, height_px;
-  int averaged[2]; /* columns and rows of the file that became one pixel, as in fg_scan_info */
-  int bit_depth;
-  double dpi[2];      /* used, x and y: as stated, over the length factor of the calibration */
-  double dpi_file[2]; /* of the file, before it was snapped; NaN without */
-  char format[8];     /* as in fg_scan_info */
-  int jpeg_quality;   /* as in fg_scan_info; 0: nothing was lost */
-  bool colour;        /* the scan holds colours */
-  fg_channel channel; /* the measured channel */
+  fg_scan_info file; /* size, format, resolution as the file states it, measured channel */
+  double dpi[2];     /* used, x and y: as stated, over the length factor of the calibration */
   fg_colour_lines colour_lines;
   fg_picture_state picture;               /* worst of all measured parts */
   fg_gauge_reading gauges[FG_GAUGES_MAX]; /* in the order of the design's */
   char tone_note[300];    /* reason why the level of a scanner's model was not applied; "": none */
   bool gauges_contradict; /* they differ by more than their u: the level's u holds it */
-  char warning[256];      /* oddities of the file; empty: none */
+  char warning[256];      /* oddities of the scan; empty: none */
   fg_design design;
   fg_nominal nominal;
   bool light_on_dark;
@@ -412,6 +415,9 @@ typedef struct fg_measurement {
   bool calibrated; /* u_ includes the uncertainty of the design's calibration */
 } fg_measurement;
 
+/* Size of the scan in x and y. */
+void fg_measurement_size_mm(const fg_measurement *measurement, double size_mm[2]);
+
 /* Returns true when it was measured, and as a foil of its design: values may be judged and enter
  * statistics. */
 bool fg_foil_is_measured(const fg_foil *foil);
@@ -422,6 +428,17 @@ void fg_foil_give_up(fg_foil *foil, const char *why);
 /* The thickness in force: stated as measured, else the scan's, the design's (u 0) where the scan
  * shows none. */
 fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil);
+
+/* The blur of a strip's edges: that of the side where it is wider. */
+double fg_strip_blur_um(const fg_strip *strip);
+
+/* The strip's thickness in units of that blur. */
+double fg_strip_widths_in_blurs(const fg_strip *strip);
+
+/* By how much the edges of a thin strip err more than those of a wide one, since they blur into
+ * each other: the error is a share of the blur that grows with its cube (reports/accuracy_hard.md)
+ * below three blurs of thickness. 1: the strip is that wide. */
+double fg_strip_coarseness(const fg_strip *strip);
 
 /* Returns true when it differs from the design's by more than U: then reports state both. */
 bool fg_thickness_differs(const fg_design *design, const fg_thickness *strip);

@@ -194,37 +194,55 @@ typedef struct fg_lot_request {
   void *user;
 } fg_lot_request;
 
+/* Number of things of a kind that a run met, and the first of them in words. */
+typedef struct fg_lot_finding {
+  size_t count;
+  char first[1024]; /* "": none */
+} fg_lot_finding;
+
+/* Scans of the lot, or of the shard. */
+typedef struct fg_lot_scans {
+  size_t count;
+  size_t to_measure, kept; /* without a valid record, with one */
+  size_t measured, failed; /* in this run; failed: could not be measured */
+  size_t redrawn;          /* kept scans whose pages are drawn again */
+  fg_lot_finding missing;  /* scans without file and record; not in to_measure */
+} fg_lot_scans;
+
+/* Foils or bearings of the lot, and how many have each verdict. */
+typedef struct fg_lot_verdicts {
+  size_t count, by_verdict[FG_VERDICT_NONE + 1];
+} fg_lot_verdicts;
+
+/* Oddities of the inputs and of earlier results, for the reader of a report. */
+typedef struct fg_lot_notes {
+  fg_lot_finding invalid_dates; /* cells of the manifest's column `date` that are no date; the
+                                   column is ignored then */
+  fg_lot_finding named_again;   /* scans that were named again, under any spelling; they count once;
+                                   `first`: the name under which it counts, too */
+  fg_lot_finding repeated;      /* scans with the bytes of an earlier one under another name; they
+                                   count as not measured */
+  fg_lot_finding empty_folders; /* empty folders whose name ends as a scan's does */
+  fg_lot_finding undrawn_pages; /* pages whose scan could not be read again */
+  size_t damaged_lines;         /* of results.jsonl: damaged or incomplete, measured again */
+  size_t first_damaged_line;    /* from 1 */
+  size_t beyond_model;          /* scans measured now that reach beyond the region of the scanner's
+                                   model */
+  bool earlier_version;         /* results.jsonl was of one: everything is measured again */
+} fg_lot_notes;
+
 enum { FG_LOT_TRACED = 400 };
 
 typedef struct fg_lot_outcome {
   fg_report_outcome judged; /* judgement of all foils, scans, bearings; fg_outcome_exit_code */
-  size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
-  size_t missing; /* missing scans without a record; not in to_measure */
-  char first_missing[512];
-  size_t redrawn;   /* kept scans whose pages are drawn again */
-  size_t not_drawn; /* pages that could not be drawn: the scan could not be read again */
-  char first_not_drawn[512];
-  size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
-  char traced[FG_LOT_TRACED]; /* the verdicts' basis: a state of traceability, with its reason */
+  fg_lot_scans scans;
+  fg_lot_verdicts foils, bearings;
   bool bearings_judged;       /* the design states tolerances of a bearing */
-  size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];
+  size_t exceeded;            /* foils with a value that fails */
+  char traced[FG_LOT_TRACED]; /* the verdicts' basis: a state of traceability, with its reason */
   char assembly[4][400]; /* drawn bearings in words, last the limits of their evidence; "": none
                             drawn */
-  size_t exceeded;       /* foils with a value that fails */
-  size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
-  size_t torn;       /* damaged or incomplete lines of results.jsonl, measured again */
-  size_t first_torn; /* the first of them, from 1 */
-  size_t no_dates; /* cells of the manifest's column `date` that are no date; the column is ignored
-                      then */
-  char first_no_date[64];
-  size_t doubles;         /* scans that were named again, under any spelling; they count once */
-  char first_double[512]; /* the first of them, with the name under which it counts */
-  /* Scans with the bytes of an earlier one under another name; they count as not measured. */
-  size_t repeated;
-  char first_repeated[1024]; /* in words */
-  size_t empty;              /* empty folders whose name ends as a scan's does */
-  char first_empty[512];
-  bool earlier; /* results.jsonl was of an earlier version: everything is measured again */
+  fg_lot_notes notes;
 } fg_lot_outcome;
 
 /* Measures missing scans and writes the report of a whole lot. A scan that cannot be measured is a

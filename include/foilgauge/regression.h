@@ -29,11 +29,11 @@ typedef struct fg_regression_options {
                              after projection on the earlier columns; 0 means 1e-13 */
   const double *weights;  /* one per row, positive, 1 / variance up to a factor; NULL: all 1 */
   /* Effects estimated from these rows and subtracted from the response beforehand: the number of
-   * their parameters, which lowers the residual dof; FG_ERR_DATA when no dof is left. `taken` is
-   * the part subtracted from each row: where it differs between repeated runs it lowers the dof of
-   * pure error, else those of lack of fit. */
-  size_t dof_taken;
-  const double *taken;
+   * their parameters, which lowers the residual dof; FG_ERR_DATA when no dof is left. `subtracted`
+   * is the part subtracted from each row: where it differs between repeated runs it lowers the dof
+   * of pure error, else those of lack of fit. */
+  size_t dof_subtracted;
+  const double *subtracted;
 } fg_regression_options;
 
 typedef struct fg_coefficient {

@@ -135,7 +135,7 @@ unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc);
 fg_verdict fg_beam_verdict(const fg_design *design, const fg_foil *foil, const fg_beam *beam);
 unsigned fg_beam_flags(const fg_design *design, const fg_foil *foil, const fg_beam *beam);
 
-/* FG_ERR_DATA when a tolerance names a quantity that is not reported for this form of part; the
+/* FG_ERR_DATA when a tolerance names a quantity that is not reported for this kind of foil; the
  * message lists those that are. Quantities of a bearing are accepted for foils. */
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design);
 

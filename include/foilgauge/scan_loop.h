@@ -47,13 +47,20 @@ typedef struct fg_scan_loop_options {
 
 typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */
 
-/* Scan i only confirms when `hold_out[i]` is true; at least one scan must not be held out.
- * FG_ERR_DATA when the scans do not fit together (resolution; under same_foil scans of different
+/* Scans of a loop: scan i only confirms where hold_out[i] is true; at least one must not be held
+ * out. */
+typedef struct fg_scan_loop_scans {
+  const char *const *paths;
+  const bool *hold_out;
+  size_t count;
+} fg_scan_loop_scans;
+
+/* FG_ERR_DATA when the scans do not fit together (resolution; under same_foil scans of different
  * foils), or when `forming` does not predict a bump that they show. FG_ERR_NOT_MEASURED when no
  * foil of the design could be measured. FG_ERR_USAGE when `without` names no listed effect. */
-fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
-                           size_t count, const fg_design *design,
-                           const fg_scan_loop_options *options, fg_scan_loop **loop);
+fg_status fg_scan_loop_run(fg_context *ctx, const fg_scan_loop_scans *scans,
+                           const fg_design *design, const fg_scan_loop_options *options,
+                           fg_scan_loop **loop);
 void fg_scan_loop_free(fg_scan_loop *loop);
 /* Returns the result, owned by the loop. */
 const fg_scan_result *fg_scan_loop_result(const fg_scan_loop *loop);

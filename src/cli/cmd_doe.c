@@ -50,7 +50,7 @@ typedef struct doe_run {
   const char *model_path;
   char sha256[65], model_sha256[65];
   fg_loop_takings takings;
-  fg_experiment_taken *taken;
+  fg_subtracted_effect *subtracted;
   fg_table sheet;
   fg_design design; /* of the scans */
   fg_run_sheet measured;
@@ -314,28 +314,29 @@ static fg_status write_doe_output(fg_context *ctx, void *user, size_t kind, FILE
   return writers[kind](ctx, &report, out);
 }
 
-static fg_status describe_taken(fg_context *ctx, doe_run *run) {
+static fg_status describe_subtracted(fg_context *ctx, doe_run *run) {
   const fg_loop_takings *takings = &run->takings;
   fg_experiment_options *how = &run->arguments.options;
-  FG_TRY(fg_memory_allocate(ctx, takings->count, sizeof *run->taken, (void **)&run->taken));
+  FG_TRY(
+      fg_memory_allocate(ctx, takings->count, sizeof *run->subtracted, (void **)&run->subtracted));
   for (size_t i = 0; i < takings->count; i++) {
     const fg_loop_taken *from = &takings->one[i];
-    fg_experiment_taken *to = &run->taken[i];
-    *to = (fg_experiment_taken){.amplitude = from->amplitude,
-                                .u_amplitude = from->u_amplitude,
-                                .parameters = from->parameters,
-                                .low = from->low,
-                                .high = from->high,
-                                .applied = from->applied};
+    fg_subtracted_effect *to = &run->subtracted[i];
+    *to = (fg_subtracted_effect){.amplitude = from->amplitude,
+                                 .u_amplitude = from->u_amplitude,
+                                 .parameters = from->parameters,
+                                 .low = from->low,
+                                 .high = from->high,
+                                 .applied = from->applied};
     fg_text_clip(to->id, sizeof to->id, "%s", from->id);
     fg_text_clip(to->words, sizeof to->words, "%s", from->words);
     fg_text_clip(to->sentence, sizeof to->sentence, "%s", from->sentence);
     for (int k = 0; k < 2; k++)
       fg_text_clip(to->column[k], sizeof to->column[k], "%s", from->column[k]);
   }
-  how->taken = run->taken;
-  how->takens = takings->count;
-  how->taken_out = takings->change;
+  how->subtracted = run->subtracted;
+  how->subtracted_count = takings->count;
+  how->subtracted_sum = takings->change;
   return FG_OK;
 }
 
@@ -360,7 +361,7 @@ static fg_status apply_loop_model(fg_context *ctx, doe_run *run, fg_table *table
                    response, run->arguments.options.response);
   FG_TRY(fg_loop_model_take(ctx, run->loop_model, table, &run->takings));
   run->arguments.options.formula = fg_loop_model_formula(run->loop_model);
-  return describe_taken(ctx, run);
+  return describe_subtracted(ctx, run);
 }
 
 static fg_status analyse(fg_context *ctx, doe_run *run) {
@@ -390,7 +391,7 @@ static void free_run(doe_run *run) {
   fg_run_sheet_free(&run->measured);
   fg_loop_model_free(run->loop_model);
   fg_loop_takings_free(&run->takings);
-  free(run->taken);
+  free(run->subtracted);
   fg_table_free(&run->sheet);
   free(run->u_name);
   free(run->said);

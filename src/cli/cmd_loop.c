@@ -308,10 +308,6 @@ static fg_status search_table(fg_context *ctx, const loop_arguments *arguments, 
   return status;
 }
 
-static bool has_own_design(const loop_arguments *arguments) {
-  return arguments->design_path || fg_loop_declaration_has_design(arguments->declared);
-}
-
 static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, int *code) {
   fg_status status = FG_OK;
   fg_loop_source source = {0};
@@ -323,8 +319,10 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, int *code)
   FG_TRY_EXIT(check_outputs(ctx, arguments));
   FG_TRY_EXIT(read_declared(ctx, arguments, &design));
   spec->design = &design;
-  FG_TRY_EXIT(fg_loop_source_read(ctx, &arguments->source, has_own_design(arguments),
-                                  &arguments->outputs, spec, &design, &source));
+  arguments->source.has_design =
+      arguments->design_path || fg_loop_declaration_has_design(arguments->declared);
+  FG_TRY_EXIT(
+      fg_loop_source_read(ctx, &arguments->source, &arguments->outputs, spec, &design, &source));
   FG_TRY_EXIT(fg_output_set_open(ctx, &arguments->outputs));
   FG_TRY_EXIT(fg_loop_table_problem_build(ctx, source.table, spec, &problem));
   FG_TRY_EXIT(search_table(ctx, arguments, source.path, &problem.problem, &result));

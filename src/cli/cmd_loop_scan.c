@@ -333,7 +333,8 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   FG_TRY_EXIT(fg_output_set_open(ctx, &a->outputs));
   a->options.date = find_date(a);
   a->options.forming = prediction;
-  FG_TRY_EXIT(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
+  const fg_scan_loop_scans scans = {a->paths, a->hold_out, a->count};
+  FG_TRY_EXIT(fg_scan_loop_run(ctx, &scans, &design, &a->options, &loop));
   *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
   note_pictures(fg_scan_loop_result(loop));
   FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_output, loop));

@@ -241,36 +241,42 @@ static void show_progress(void *user, const fg_lot_progress *progress) {
 }
 
 static void print_bearings(const fg_lot_outcome *outcome) {
-  const size_t *by = outcome->bearings_by_verdict;
+  const size_t bearings = outcome->bearings.count, *by = outcome->bearings.by_verdict;
   fprintf(stderr, "%zu bearing%s: %zu pass, %zu fail, %zu cannot be told, %zu not measured%s\n",
-          outcome->bearings, fg_plural(outcome->bearings), by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
+          bearings, fg_plural(bearings), by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
           by[FG_VERDICT_UNDECIDED], by[FG_VERDICT_NOT_MEASURED],
-          outcome->bearings ? ""
-                            : ": the design's tolerances of a bearing judge nothing, the foils "
-                              "make none");
+          bearings ? ""
+                   : ": the design's tolerances of a bearing judge nothing, the foils make none");
 }
 
-int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
-  const size_t *by = outcome->foils_by_verdict;
-  if (outcome->no_dates)
+/* Notes on the manifest and the scans that every report of a lot has. */
+static void print_report_notes(const fg_lot_notes *notes) {
+  const fg_lot_finding *dates = &notes->invalid_dates, *repeated = &notes->repeated;
+  if (dates->count)
     fprintf(stderr,
             "foilgauge: note: the manifest's column date: %zu cell%s without a date, the first is "
             "'%s' (2024-05-31 or 31.05.2024 would be one): the lot is dated by the times of its "
             "scans' files\n",
-            outcome->no_dates, fg_plural(outcome->no_dates), outcome->first_no_date);
-  if (outcome->repeated)
+            dates->count, fg_plural(dates->count), dates->first);
+  if (repeated->count)
     fprintf(
         stderr,
         "foilgauge: note: the same scan under another name, counted once: %zu scan%s; the first: "
         "%s\n",
-        outcome->repeated, fg_plural(outcome->repeated), outcome->first_repeated);
-  fprintf(stderr, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told",
-          outcome->foils, fg_plural(outcome->foils), outcome->scans, fg_plural(outcome->scans),
-          by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
+        repeated->count, fg_plural(repeated->count), repeated->first);
+}
+
+int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
+  const size_t *by = outcome->foils.by_verdict, foils = outcome->foils.count;
+  const size_t scans = outcome->scans.count, failed = outcome->scans.failed;
+  print_report_notes(&outcome->notes);
+  fprintf(stderr, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told", foils,
+          fg_plural(foils), scans, fg_plural(scans), by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
+          by[FG_VERDICT_UNDECIDED]);
   if (by[FG_VERDICT_NONE]) fprintf(stderr, ", %zu without tolerances", by[FG_VERDICT_NONE]);
-  if (by[FG_VERDICT_NOT_MEASURED] || outcome->failed)
+  if (by[FG_VERDICT_NOT_MEASURED] || failed)
     fprintf(stderr, "; not measured: %zu foil%s, %zu scan%s", by[FG_VERDICT_NOT_MEASURED],
-            fg_plural(by[FG_VERDICT_NOT_MEASURED]), outcome->failed, fg_plural(outcome->failed));
+            fg_plural(by[FG_VERDICT_NOT_MEASURED]), failed, fg_plural(failed));
   if (by[FG_VERDICT_PASS] || by[FG_VERDICT_FAIL])
     fprintf(stderr, "\nTraced to: %s", outcome->traced);
   fputc('\n', stderr);
@@ -281,21 +287,22 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   return fg_outcome_exit_code(&outcome->judged);
 }
 
-static void print_plan(const fg_lot_outcome *outcome) {
-  printf("%zu scan%s, %zu to measure, %zu kept", outcome->scans, fg_plural(outcome->scans),
-         outcome->to_measure, outcome->kept);
-  if (outcome->redrawn) printf(", %zu of them for their pages", outcome->redrawn);
-  if (outcome->missing)
-    printf(", %zu missing: %s%s", outcome->missing, outcome->missing > 1 ? "the first is " : "",
-           outcome->first_missing);
+static void print_plan(const fg_lot_scans *scans) {
+  const fg_lot_finding *missing = &scans->missing;
+  printf("%zu scan%s, %zu to measure, %zu kept", scans->count, fg_plural(scans->count),
+         scans->to_measure, scans->kept);
+  if (scans->redrawn) printf(", %zu of them for their pages", scans->redrawn);
+  if (missing->count)
+    printf(", %zu missing: %s%s", missing->count, missing->count > 1 ? "the first is " : "",
+           missing->first);
   putchar('\n');
 }
 
-static int print_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
+static int print_shard(const lot_arguments *arguments, const fg_lot_scans *scans) {
   fprintf(stderr, "shard %zu/%zu: %zu scan%s measured, %zu kept, %zu could not be measured\n",
-          arguments->shard.index, arguments->shard.count, outcome->measured,
-          fg_plural(outcome->measured), outcome->kept, outcome->failed);
-  return outcome->failed ? 2 : 0;
+          arguments->shard.index, arguments->shard.count, scans->measured,
+          fg_plural(scans->measured), scans->kept, scans->failed);
+  return scans->failed ? 2 : 0;
 }
 
 static fg_status print_recipe(fg_context *ctx, const fg_lot_settings *settings) {
@@ -350,6 +357,38 @@ static fg_status hold_expected(fg_context *ctx, const lot_arguments *arguments) 
   return status;
 }
 
+/* Notes on the inputs and on the earlier results of a run. */
+static void print_run_notes(const fg_lot_notes *notes) {
+  const fg_lot_finding *again = &notes->named_again, *folders = &notes->empty_folders;
+  const fg_lot_finding *pages = &notes->undrawn_pages;
+  if (again->count)
+    fprintf(stderr, "foilgauge: note: there twice and counted once: %zu scan%s; the first is %s\n",
+            again->count, fg_plural(again->count), again->first);
+  if (folders->count)
+    fprintf(
+        stderr,
+        "foilgauge: note: passed over: %zu folder%s with the name of a scan, and no scan in it; "
+        "the first is %s\n",
+        folders->count, fg_plural(folders->count), folders->first);
+  if (notes->damaged_lines)
+    fprintf(
+        stderr,
+        "foilgauge: note: results.jsonl: %zu line%s damaged or not whole, the first is line %zu: "
+        "what they said is measured again\n",
+        notes->damaged_lines, fg_plural(notes->damaged_lines), notes->first_damaged_line);
+  if (notes->earlier_version)
+    fprintf(stderr, "foilgauge: note: results.jsonl is of an earlier version, whose records hold "
+                    "other values or no checksum: all scans are measured again\n");
+  if (notes->beyond_model)
+    fprintf(
+        stderr,
+        "foilgauge: note: beyond the region that the scanner's model was found in: %zu scan%s\n",
+        notes->beyond_model, fg_plural(notes->beyond_model));
+  if (pages->count)
+    fprintf(stderr, "foilgauge: note: %zu page%s could not be drawn; the first: %s\n", pages->count,
+            fg_plural(pages->count), pages->first);
+}
+
 static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *code) {
   fg_lot_settings settings;
   fg_lot_outcome outcome;
@@ -373,37 +412,12 @@ static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *c
                                   .listener = show_progress,
                                   .user = &terminal};
   FG_TRY(fg_lot_run(ctx, &request, &outcome));
-  if (outcome.doubles)
-    fprintf(stderr, "foilgauge: note: there twice and counted once: %zu scan%s; the first is %s\n",
-            outcome.doubles, fg_plural(outcome.doubles), outcome.first_double);
-  if (outcome.empty)
-    fprintf(
-        stderr,
-        "foilgauge: note: passed over: %zu folder%s with the name of a scan, and no scan in it; "
-        "the first is %s\n",
-        outcome.empty, fg_plural(outcome.empty), outcome.first_empty);
-  if (outcome.torn)
-    fprintf(
-        stderr,
-        "foilgauge: note: results.jsonl: %zu line%s damaged or not whole, the first is line %zu: "
-        "what they said is measured again\n",
-        outcome.torn, fg_plural(outcome.torn), outcome.first_torn);
-  if (outcome.earlier)
-    fprintf(stderr, "foilgauge: note: results.jsonl is of an earlier version, whose records hold "
-                    "other values or no checksum: all scans are measured again\n");
-  if (outcome.beyond)
-    fprintf(
-        stderr,
-        "foilgauge: note: beyond the region that the scanner's model was found in: %zu scan%s\n",
-        outcome.beyond, fg_plural(outcome.beyond));
-  if (outcome.not_drawn)
-    fprintf(stderr, "foilgauge: note: %zu page%s could not be drawn; the first: %s\n",
-            outcome.not_drawn, fg_plural(outcome.not_drawn), outcome.first_not_drawn);
+  print_run_notes(&outcome.notes);
   if (arguments->expected && !arguments->dry_run) FG_TRY(hold_expected(ctx, arguments));
   if (arguments->dry_run)
-    print_plan(&outcome);
+    print_plan(&outcome.scans);
   else
-    *code = arguments->shard.count > 1 ? print_shard(arguments, &outcome)
+    *code = arguments->shard.count > 1 ? print_shard(arguments, &outcome.scans)
                                        : fg_cli_lot_summary(&outcome, arguments->folder);
   return FG_OK;
 }

@@ -105,7 +105,7 @@ static fg_status read_table(fg_context *ctx, const fg_loop_source_request *reque
   return fg_loop_table_count_times(ctx, &source->read, spec, &source->said);
 }
 
-static fg_status read_lot(fg_context *ctx, const fg_loop_source_request *request, bool has_design,
+static fg_status read_lot(fg_context *ctx, const fg_loop_source_request *request,
                           fg_loop_table_spec *spec, fg_design *design, fg_loop_source *source) {
   fg_lot_table *lot = &source->lot;
   const fg_lot_table_options options = {.quantity = spec->response,
@@ -124,7 +124,7 @@ static fg_status read_lot(fg_context *ctx, const fg_loop_source_request *request
   source->said = lot->said;
   lot->said = NULL;
   if (!spec->group) spec->group = lot->group;
-  if (!has_design) *design = lot->design;
+  if (!request->has_design) *design = lot->design;
   return FG_OK;
 }
 
@@ -250,9 +250,9 @@ exit:
 }
 
 static fg_status read_source(fg_context *ctx, const fg_loop_source_request *request,
-                             bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
-                             fg_design *design, fg_loop_source *source) {
-  if (request->lot) return read_lot(ctx, request, has_design, spec, design, source);
+                             fg_output_set *outputs, fg_loop_table_spec *spec, fg_design *design,
+                             fg_loop_source *source) {
+  if (request->lot) return read_lot(ctx, request, spec, design, source);
   if (request->runs) return read_runs(ctx, request, outputs, spec, design, source);
   return read_table(ctx, request, spec, source);
 }
@@ -264,10 +264,10 @@ static fg_table *table_of(const fg_loop_source_request *request, fg_loop_source 
 }
 
 fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *request,
-                              bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
-                              fg_design *design, fg_loop_source *source) {
+                              fg_output_set *outputs, fg_loop_table_spec *spec, fg_design *design,
+                              fg_loop_source *source) {
   *source = (fg_loop_source){0};
-  FG_TRY(read_source(ctx, request, has_design, outputs, spec, design, source));
+  FG_TRY(read_source(ctx, request, outputs, spec, design, source));
   if (!request->forming_model) return FG_OK;
   return declare_forming(ctx, request->forming_model, table_of(request, source), spec, source);
 }

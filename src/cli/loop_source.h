@@ -21,7 +21,8 @@ typedef struct fg_loop_source_request {
   double dpi;
   unsigned threads;
   bool allow_lossy;
-  bool complete; /* of a table only rows without an empty cell */
+  bool complete;   /* of a table only rows without an empty cell */
+  bool has_design; /* the caller names one; else that of a lot holds */
 } fg_loop_source_request;
 
 typedef struct fg_loop_source {
@@ -47,10 +48,10 @@ fg_status fg_loop_source_check(fg_context *ctx, const fg_loop_source_request *re
                                fg_output_set *outputs);
 
 /* Reads the table for a response and its model; `spec->group` is chosen where it is NULL, and
- * `design` is the lot's where the caller has none. Free with fg_loop_source_free. */
+ * `design` is the lot's without `has_design`. Free with fg_loop_source_free. */
 fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *request,
-                              bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
-                              fg_design *design, fg_loop_source *source);
+                              fg_output_set *outputs, fg_loop_table_spec *spec, fg_design *design,
+                              fg_loop_source *source);
 void fg_loop_source_free(fg_loop_source *source);
 
 #endif

@@ -56,7 +56,7 @@ static void put_held_radii(FILE *out, const fg_expected_check *check) {
   fg_plot_end(&at);
 }
 
-/* Springback of all bumps, before and after, with what lots scatter by. */
+/* Springback of all bumps, before and after, with the scatter between lots. */
 static void put_law_change(FILE *out, const fg_expected_check *check) {
   fputs("<ul class=\"words\">\n", out);
   for (int q = 0; q < FG_FORMED; q++) {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 
 /* Fewer foils do not show their distribution. */
 enum { DEVIATIONS_MIN = 5 };
@@ -49,7 +49,7 @@ void fg_drawer_end(fg_drawer *drawer) {
 }
 
 static const fg_springback_point *draw_point(fg_drawer *drawer, const fg_springback_fit *fit) {
-  double left = fg_engine_random_uniform(&drawer->state);
+  double left = fg_splitmix_uniform(&drawer->state);
   size_t i = 0;
   while (i + 1 < fit->points && left > fit->point[i].weight)
     left -= fit->point[i++].weight;
@@ -69,7 +69,7 @@ static void draw_quantity(fg_drawer *drawer, fg_formed formed, fg_drawn_process 
   if (!fit->points) return;
   const fg_springback_point *point = draw_point(drawer, fit);
   for (size_t i = 0; i < fit->states; i++) {
-    normal[i] = fg_engine_random_normal(&drawer->state);
+    normal[i] = fg_splitmix_normal(&drawer->state);
     state[i] = point->mean[i];
     for (size_t k = 0; k <= i; k++)
       state[i] += point->root[i * fit->states + k] * normal[k];
@@ -124,15 +124,15 @@ static void draw_deviation(fg_drawer *drawer, const fg_drawn_process *process, d
                            fg_formed_foil *deviation) {
   double share = 1 / sqrt(foils);
   for (int q = 0; q < 2; q++) {
-    double level = share * process->sizes[q].foil * fg_engine_random_normal(&drawer->state);
+    double level = share * process->sizes[q].foil * fg_splitmix_normal(&drawer->state);
     for (size_t i = 0; i < drawer->die->bumps; i++)
       deviation->log_ratio[q][i] =
-          level + share * process->sizes[q].rest * fg_engine_random_normal(&drawer->state);
+          level + share * process->sizes[q].rest * fg_splitmix_normal(&drawer->state);
   }
   deviation->overall =
-      share * process->sizes[FG_FORMED_OVERALL].foil * fg_engine_random_normal(&drawer->state);
+      share * process->sizes[FG_FORMED_OVERALL].foil * fg_splitmix_normal(&drawer->state);
   deviation->pitch =
-      share * process->sizes[FG_FORMED_PITCH].foil * fg_engine_random_normal(&drawer->state);
+      share * process->sizes[FG_FORMED_PITCH].foil * fg_splitmix_normal(&drawer->state);
 }
 
 void fg_draw_mean(fg_drawer *drawer, const fg_drawn_process *process, double foils,
@@ -146,7 +146,7 @@ void fg_draw_foil(fg_drawer *drawer, const fg_drawn_process *process, fg_drawn_f
   fg_formed_foil deviation;
   draw_deviation(drawer, process, 1, &deviation);
   if (drawer->deviations) {
-    double at = fg_engine_random_uniform(&drawer->state) * (double)drawer->deviations;
+    double at = fg_splitmix_uniform(&drawer->state) * (double)drawer->deviations;
     const fg_formed_foil *seen = &drawer->deviation[(size_t)at];
     for (int q = 0; q < 2; q++)
       for (size_t i = 0; i < drawer->die->bumps; i++)

@@ -98,22 +98,22 @@ static fg_status check_target(fg_context *ctx, const char *path, const fg_design
 static size_t highest_number(const fg_lot *lot) {
   int highest = 0;
   for (size_t i = 0; i < lot->manifest.items; i++)
-    for (size_t f = 0; f < lot->records[i].foil_count; f++)
-      for (size_t k = 0; k < lot->records[i].foils[f].bump_count; k++)
-        if (lot->records[i].foils[f].bumps[k].number > highest)
-          highest = lot->records[i].foils[f].bumps[k].number;
+    for (size_t f = 0; f < lot->records[i].foil_count; f++) {
+      const fg_foil *foil = &lot->records[i].foils[f];
+      for (size_t k = 0; k < foil->bump_count; k++)
+        if (foil->bumps[k].number > highest) highest = foil->bumps[k].number;
+    }
   return (size_t)highest;
 }
 
 /* Reads the die of a lot: its report, else that of the earlier report, else the lot's design. */
 static fg_status find_lot_die(fg_context *ctx, const fg_compensation_lot *from,
-                              const fg_formed_lot *lot, bool has_prior,
-                              fg_compensation_inputs *inputs, fg_die_dimensions *die,
-                              fg_die_origin *origin) {
+                              const fg_formed_lot *lot, const fg_compensation_inputs *inputs,
+                              fg_die_dimensions *die, fg_die_origin *origin) {
   const fg_design *design = &lot->lot.settings.design;
   if (from->die) return fg_die_dimensions_load(ctx, from->die, design, inputs->bumps, die, origin);
   *origin = FG_DIE_AS_DESIGNED;
-  if (!has_prior) return fg_die_dimensions_of_design(ctx, design, inputs->bumps, die);
+  if (!inputs->has_prior) return fg_die_dimensions_of_design(ctx, design, inputs->bumps, die);
   *die = inputs->present;
   *origin = FG_DIE_AS_CUT;
   return FG_OK;
@@ -140,8 +140,7 @@ static fg_status add_lot(fg_context *ctx, const fg_compensation_request *request
   if (!inputs->bumps && fg_foil_traits_of(next->target.kind)->has_bumps)
     inputs->bumps = highest_number(&lot.lot);
   note_bumps(&lot, next, inputs->bumps);
-  FG_TRY_EXIT(
-      find_lot_die(ctx, &request->lots[i], &lot, request->prior != NULL, inputs, &die, &origin));
+  FG_TRY_EXIT(find_lot_die(ctx, &request->lots[i], &lot, inputs, &die, &origin));
   FG_TRY_EXIT(fg_formed_sets_add(ctx, &lot, &die, origin, inputs->bumps, &inputs->sets));
   if (origin == FG_DIE_AS_DESIGNED && inputs->sets.set[inputs->sets.count - 1].origin == origin)
     fg_next_die_note(next,
@@ -189,6 +188,7 @@ fg_status fg_compensation_inputs_read(fg_context *ctx, const fg_compensation_req
     return fg_fail(ctx, FG_ERR_USAGE, "a die is found from lots: name one with --lot");
   FG_TRY(load_target(ctx, request, next));
   if (fg_foil_traits_of(next->target.kind)->has_bumps) inputs->bumps = next->target.bumps.count;
+  inputs->has_prior = request->prior != NULL;
   if (request->prior) FG_TRY(read_prior(ctx, request->prior, next, inputs));
   for (size_t i = 0; i < request->lot_count; i++)
     FG_TRY(add_lot(ctx, request, i, next, inputs));

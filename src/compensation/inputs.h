@@ -10,6 +10,7 @@ typedef struct fg_compensation_inputs {
   fg_formed_sets sets;       /* those of the earlier report first */
   fg_die_dimensions present; /* of the last set */
   size_t bumps;              /* of the target */
+  bool has_prior;            /* an earlier report was read: `present` is its die at first */
 } fg_compensation_inputs;
 
 /* Reads the sets of an earlier report, of `die --target` or of `lot --expected`. */

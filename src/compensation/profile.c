@@ -23,9 +23,12 @@ static void add_arc(fg_die_profile_arcs *profile, double x, double y, double rad
   profile->arc[profile->count++] = (fg_profile_arc){{x, y}, radius, from, to};
 }
 
-/* A fillet touches the lands from within and the bump from outside. */
-static fg_status add_bump(fg_context *ctx, const fg_die_bump_dimensions *bump, double overall,
-                          double offset, double fillet, double *at, fg_die_profile_arcs *profile) {
+/* Adds the land from direction `at` on, a bump and the fillets beside it; `at` is then the end of
+ * the second one. A fillet touches the lands from within and the bump from outside. */
+static fg_status add_bump_arcs(fg_context *ctx, const fg_die_dimensions *die, size_t i,
+                               double offset, double *at, fg_die_profile_arcs *profile) {
+  const fg_die_bump_dimensions *bump = &die->bump[i];
+  double overall = die->overall_radius_mm, fillet = die->fillet_radius_mm;
   double half = bump->bump_angle_deg / 2 * radians, chord = bump->radius_mm * sin(half);
   double x = bump->radius_mm * cos(half) + sqrt(overall * overall - chord * chord);
   double lands = overall + offset, radius = bump->radius_mm - offset, f = fillet + offset;
@@ -51,8 +54,7 @@ fg_status fg_profile_make(fg_context *ctx, const fg_die_dimensions *die, double 
   double at = -half_turn * radians;
   profile->count = 0;
   for (size_t i = 0; i < die->bumps; i++)
-    FG_TRY(add_bump(ctx, &die->bump[i], die->overall_radius_mm, offset_mm, die->fillet_radius_mm,
-                    &at, profile));
+    FG_TRY(add_bump_arcs(ctx, die, i, offset_mm, &at, profile));
   add_arc(profile, 0, 0, die->overall_radius_mm + offset_mm, at, half_turn * radians);
   return FG_OK;
 }

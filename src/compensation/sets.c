@@ -267,26 +267,33 @@ exit:
   return status;
 }
 
+/* The die of a set; its name as the manifest has it, NULL: all foils of the lot are of it. */
+typedef struct set_die {
+  const char *name;
+  const fg_die_dimensions *dimensions;
+  fg_die_origin origin;
+} set_die;
+
 /* Adds the foils of one die, and their set where there are any. */
-static fg_status add_set(fg_context *ctx, const fg_formed_lot *lot, const char *name,
-                         const fg_die_dimensions *die, fg_die_origin origin, size_t bumps,
-                         fg_formed_sets *sets) {
+static fg_status add_set(fg_context *ctx, const fg_formed_lot *lot, const set_die *die,
+                         size_t bumps, fg_formed_sets *sets) {
   size_t first = sets->foils;
-  FG_TRY(add_formed_foils(ctx, lot, name, die, bumps, sets));
+  FG_TRY(add_formed_foils(ctx, lot, die->name, die->dimensions, bumps, sets));
   if (sets->foils == first) return FG_OK;
   FG_TRY(fg_memory_reserve(ctx, sets->count + 1, sizeof *sets->set, &sets->capacity,
                            (void **)&sets->set));
   fg_formed_set *set = &sets->set[sets->count++];
-  *set = (fg_formed_set){.origin = origin, .foils = sets->foils - first};
+  *set = (fg_formed_set){.origin = die->origin, .foils = sets->foils - first};
   fg_text_clip(set->lot, sizeof set->lot, "%s",
                lot->lot.settings.name[0] ? lot->lot.settings.name : lot->folder);
-  fg_text_clip(set->die, sizeof set->die, "%s", name ? name : "");
+  fg_text_clip(set->die, sizeof set->die, "%s", die->name ? die->name : "");
   fg_text_clip(set->folder, sizeof set->folder, "%s", lot->folder);
   fg_text_clip(set->date, sizeof set->date, "%s", lot->date);
   memcpy(set->sha256, lot->sha256, sizeof set->sha256);
   memcpy(set->scans_sha256, lot->scans_sha256, sizeof set->scans_sha256);
   for (int q = 0; q < FG_FORMED; q++)
-    summarise_set(sets->foil + first, set->foils, die, bumps, (fg_formed)q, &set->of[q]);
+    summarise_set(sets->foil + first, set->foils, die->dimensions, bumps, (fg_formed)q,
+                  &set->of[q]);
   return FG_OK;
 }
 
@@ -326,7 +333,7 @@ fg_status fg_formed_sets_add(fg_context *ctx, const fg_formed_lot *lot,
   size_t column = fg_manifest_column(manifest, lot->lot.settings.die_column), before = sets->count;
   FG_TRY(check_new_lot(ctx, lot, sets));
   if (origin != FG_DIE_AS_DESIGNED || column == FG_NO_COLUMN)
-    FG_TRY(add_set(ctx, lot, NULL, die, origin, bumps, sets));
+    FG_TRY(add_set(ctx, lot, &(set_die){NULL, die, origin}, bumps, sets));
   else
     for (size_t i = 0; i < manifest->items; i++) {
       const char *name = fg_manifest_cell(manifest, i, column);
@@ -334,8 +341,8 @@ fg_status fg_formed_sets_add(fg_context *ctx, const fg_formed_lot *lot,
       fg_die_dimensions own = *die;
       if (is_named_before(manifest, column, i)) continue;
       if (kept) use_recipe_die(kept, &own);
-      FG_TRY(add_set(ctx, lot, name, &own, kept ? FG_DIE_AS_MEASURED : FG_DIE_AS_DESIGNED, bumps,
-                     sets));
+      const set_die named = {name, &own, kept ? FG_DIE_AS_MEASURED : FG_DIE_AS_DESIGNED};
+      FG_TRY(add_set(ctx, lot, &named, bumps, sets));
     }
   if (sets->count > before) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,

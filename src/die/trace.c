@@ -131,7 +131,7 @@ static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double ang
   trace->noise_um = 1000 * sqrt(square / (double)n);
   fg_status status = fg_die_form_error_find(ctx, &layout->line, whole, n, &trace->form_error);
   free(whole);
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, FG_NOISE_OF_LINE, &noise);
   fg_arc_covariance(&layout->line, &noise, &layout->overall);
   fg_arc_cluster_covariance(&layout->line, LANDS_P, &layout->overall);
   return status;

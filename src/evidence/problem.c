@@ -18,10 +18,10 @@
 /* Variance of the linearisation error over that of the noise, from which a second linearisation is
  * worth its time. */
 #define LARGE_SHARE 0.1
-/* A strip of less than so many blurs has no plateau, and its edges err by a share of the blur that
- * grows as the cube of how far it is below: of sound foils at 600 dpi nothing is claimed then. */
-#define PLATEAU_BLURS 3.0
-#define COARSE_BLURS  0.004
+/* Error of a coarse strip's edges from place to place, as a share of their blur, for each unit of
+ * fg_strip_coarseness above 1: with it nothing is claimed of sound foils at 600 dpi. The shift of a
+ * whole line is less (FG_LINE_SHIFT_BLURS of geometry/foil_uncertainty.h). */
+#define COARSE_BLURS 0.004
 /* Length over which such errors are alike, mm. */
 #define ERROR_LENGTH_MM 0.3
 
@@ -59,9 +59,9 @@ static double find_coarse_error_um(const fg_edge_fit *edge_fit) {
   for (size_t v = 0; v < edge_fit->view_count; v++) {
     const fg_foil *foil = edge_fit->views[v].foil;
     if (!foil) continue;
-    double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
-    double overlap = PLATEAU_BLURS * blur_um / (1000 * foil->strip.thickness_mm);
-    if (overlap > 1) largest = fmax(largest, COARSE_BLURS * (pow(overlap, 3) - 1) * blur_um);
+    double coarser = fg_strip_coarseness(&foil->strip) - 1;
+    if (coarser > 0)
+      largest = fmax(largest, COARSE_BLURS * coarser * fg_strip_blur_um(&foil->strip));
   }
   return largest;
 }

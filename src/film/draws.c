@@ -7,12 +7,12 @@
 
 #include "core/parallel.h"
 #include "core/select.h"
+#include "core/splitmix.h"
 #include "film/draw_file.h"
 #include "film/stock.h"
 #include "foilgauge/density.h"
 #include "foilgauge/memory.h"
 #include "lot/statistics/assembly.h"
-#include "table_loop/engine_random.h"
 
 enum { DRAWS_OF_A_TASK = 10, SCATTER_DRAWS = 200 };
 static const double confidence = 0.95;
@@ -43,8 +43,8 @@ enum {
 
 static uint64_t seed_draw(const fg_film_report *r, uint64_t purpose, size_t draw) {
   uint64_t state = r->options.seed * 0xd1342543de82ef95u + purpose;
-  state = fg_engine_random_next(&state) ^ draw;
-  return fg_engine_random_next(&state);
+  state = fg_splitmix_next(&state) ^ draw;
+  return fg_splitmix_next(&state);
 }
 
 /* A scatter of one percent, normal. */
@@ -52,7 +52,7 @@ static void draw_scatter(const fg_film_report *r, const fg_film_sensitivity *sca
                          fg_film_bearing *bearing) {
   uint64_t state = seed_draw(r, STREAM_SCATTER + (uint64_t)scatter->parameter, draw);
   for (size_t i = 0; i < bearing->count; i++)
-    fg_film_change_bump(scatter, fg_engine_random_normal(&state), i, bearing);
+    fg_film_change_bump(scatter, fg_splitmix_normal(&state), i, bearing);
 }
 
 /* Shims of heights between both ends, of equal probability: a higher one closes the clearance. */
@@ -60,7 +60,7 @@ static void draw_shims(const fg_film_report *r, size_t draw, fg_film_bearing *be
   uint64_t state = seed_draw(r, STREAM_SHIMS, draw);
   double low = r->options.draw.shim_low_pct, high = r->options.draw.shim_high_pct;
   for (size_t i = 0; i < bearing->count; i++) {
-    double height_pct = low + (high - low) * fg_engine_random_uniform(&state);
+    double height_pct = low + (high - low) * fg_splitmix_uniform(&state);
     bearing->clearance_mm[i] -= height_pct / 100 * r->clearance_um * 1e-3;
   }
 }
@@ -69,15 +69,15 @@ static void draw_spread(const fg_film_report *r, double spread_mm, size_t draw,
                         fg_film_bearing *bearing) {
   uint64_t state = seed_draw(r, STREAM_SPREAD, draw);
   for (size_t i = 0; i < bearing->count; i++)
-    bearing->clearance_mm[i] += spread_mm * (2 * fg_engine_random_uniform(&state) - 1);
+    bearing->clearance_mm[i] += spread_mm * (2 * fg_splitmix_uniform(&state) - 1);
 }
 
 static void draw_measured(const fg_film_report *r, size_t draw, fg_film_bearing *bearing) {
   uint64_t state = seed_draw(r, STREAM_MEASURED, draw);
-  double common = fg_engine_random_normal(&state);
+  double common = fg_splitmix_normal(&state);
   for (size_t i = 0; i < bearing->count; i++)
     bearing->clearance_mm[i] +=
-        r->u_shared_mm[i] * common + r->u_own_mm[i] * fg_engine_random_normal(&state);
+        r->u_shared_mm[i] * common + r->u_own_mm[i] * fg_splitmix_normal(&state);
 }
 
 /* Foils of the stock, picked as a lot's assembly picks them. */

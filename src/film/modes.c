@@ -138,13 +138,14 @@ static fg_film_mode mode_of(const fg_film_motion *motion, double speed_rpm) {
                         .direction = motion->forward ? FG_FILM_FORWARD : FG_FILM_BACKWARD};
 }
 
-fg_status fg_film_find_modes(fg_context *ctx, const fg_film_report *r, fg_film_workspace *b,
+fg_status fg_film_find_modes(fg_context *ctx, const fg_film_report *r, fg_film_workspace *workspace,
                              fg_film_result *result, fg_film_modes *modes) {
   fg_film_motions motions;
   double mass = r->options.rotor_mass_kg / fg_film_mass_unit_kg(r, result->speed_rpm);
   modes->count = 0;
   if (result->outcome == FG_FILM_UNSOLVED) return FG_OK;
-  FG_TRY(fg_film_find_motions(ctx, &b->film, &b->at, &b->state, mass, &motions));
+  FG_TRY(fg_film_find_motions(ctx, &workspace->film, &workspace->at, &workspace->state, mass,
+                              &motions));
   modes->count = motions.count;
   for (size_t i = 0; i < motions.count; i++)
     modes->mode[i] = mode_of(&motions.motion[i], result->speed_rpm);

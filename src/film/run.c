@@ -36,8 +36,9 @@ static fg_status find_coefficients(fg_context *ctx, fg_film_report *r,
   return FG_OK;
 }
 
-static fg_status keep_field(fg_context *ctx, fg_film_report *r, const fg_film_workspace *b) {
-  const fg_film *film = &b->film;
+static fg_status keep_field(fg_context *ctx, fg_film_report *r,
+                            const fg_film_workspace *workspace) {
+  const fg_film *film = &workspace->film;
   void *block;
   FG_TRY(fg_memory_allocate(ctx, film->columns, sizeof *r->column, &block));
   r->column = block;
@@ -47,15 +48,15 @@ static fg_status keep_field(fg_context *ctx, fg_film_report *r, const fg_film_wo
   r->pressure_kpa = block;
   for (size_t i = 0; i < film->columns; i++) {
     double *pressure = r->pressure_kpa + i * film->nodes;
-    r->column[i] =
-        (fg_film_column){.pad = film->mesh.ring ? 1 : 1 + i / (film->mesh.cells + 1),
-                         .angle_deg = fg_film_angle_rad(&film->mesh, i) * deg_per_rad,
-                         .clearance_um = b->at.clearance[i] * r->clearance_um,
-                         .film_um = fg_film_thickness(film, &b->at, &b->state, i) * r->clearance_um,
-                         .deflection_um = b->state.deflection[i] * r->clearance_um,
-                         .pressure_kpa = pressure};
+    r->column[i] = (fg_film_column){
+        .pad = film->mesh.ring ? 1 : 1 + i / (film->mesh.cells + 1),
+        .angle_deg = fg_film_angle_rad(&film->mesh, i) * deg_per_rad,
+        .clearance_um = workspace->at.clearance[i] * r->clearance_um,
+        .film_um = fg_film_thickness(film, &workspace->at, &workspace->state, i) * r->clearance_um,
+        .deflection_um = workspace->state.deflection[i] * r->clearance_um,
+        .pressure_kpa = pressure};
     for (size_t j = 0; j < film->nodes; j++)
-      pressure[j] = b->state.pressure[i * film->nodes + j] * r->options.ambient_kpa;
+      pressure[j] = workspace->state.pressure[i * film->nodes + j] * r->options.ambient_kpa;
   }
   return FG_OK;
 }

@@ -20,7 +20,7 @@ enum { STRETCHES = 12, ROUNDS = 5, STATIONS_MIN = 64, BUMPS_MIN = 3 };
 /* Min length of a departure, in thicknesses: at an end a lip, within the strip a bump or a dent. */
 #define LIP_THICKNESSES  3.0
 #define BUMP_THICKNESSES 5.0
-/* Min share of the strip on the circle; below it the object is another thing. */
+/* Min share of the strip on the circle; below it the object is no such strip. */
 #define COVER_SHARE 0.5
 
 static double away_mm(const fg_strip *strip) {
@@ -68,7 +68,8 @@ static size_t stations_in(const fg_strip *strip, double mm) {
   return (size_t)ceil(mm / strip->step_mm);
 }
 
-/* Finds one end of the circle's part. A remainder beyond it, if it is more than a little, is a lip.
+/* Finds one end of the circle's part. A remainder beyond it is a lip, unless it is shorter than
+ * LIP_THICKNESSES.
  */
 static size_t arc_end(fg_layout *layout, bool last) {
   const fg_strip *strip = layout->line.strip;
@@ -181,8 +182,8 @@ static fg_point end_point(const fg_design *design, const fg_layout *layout,
  * the datum is an edge; and the mean roughness of the cut over the thickness, if it is as rough as
  * the sides. */
 static double end_variance(const fg_design *design, const fg_foil *foil, const fg_strip_end *end) {
-  double thickness = foil->thickness_mm, rough = 1e-3 * foil->edge_rough_um;
-  double share = fmin(1, foil->correlation_mm / thickness);
+  double thickness = foil->thickness.mm, rough = 1e-3 * foil->noise.edge_rough_um;
+  double share = fmin(1, foil->noise.correlation_mm / thickness);
   double skew = design->datum == FG_DATUM_MID ? 0 : 0.5 * thickness * end->u_skew;
   double shift = 1e-3 * FG_LINE_SHIFT_BLURS * end->blur_um;
   return 1e-6 * end->u_um * end->u_um + skew * skew + rough * rough * share + shift * shift;
@@ -242,7 +243,7 @@ static void fill_arc_values(const fg_design *design, const fg_layout *layout, fg
 static void widen_bend(fg_foil *foil) {
   fg_overall *o = &foil->overall;
   const fg_strip *strip = &foil->strip;
-  double blur_mm = fmax(strip->blur_left_um, strip->blur_right_um) / 1000;
+  double blur_mm = fg_strip_blur_um(strip) / 1000;
   double half_rad = 0.5 * strip->stations[strip->count - 1].s_mm / o->radius_mm;
   double by_mm = FG_LINE_SHIFT_BLURS * blur_mm / (1 - cos(fmin(half_rad, M_PI / 2)));
   double middle = foil->rotation_deg * M_PI / 180;

@@ -9,11 +9,18 @@
 
 enum { RANGE_MAX = 4096 }; /* max number of used stations of one range */
 
-/* One residual: of the datum line from its circle, or of the half width from its mean. */
-static double residual_at(const fg_datum_line *line, const fg_arc *arc, size_t k, int values,
-                          double mean) {
-  if (!fg_arc_used(line, arc, k)) return NAN;
-  return values ? line->half_width[k] - mean : fg_arc_residual(line, &arc->circle, k);
+/* Residuals along an arc: of the datum line from its circle, or of the half width from its mean. */
+typedef struct arc_residuals {
+  const fg_datum_line *line;
+  const fg_arc *arc;
+  fg_noise_of of;
+  double mean_half_width;
+} arc_residuals;
+
+static double residual_at(const arc_residuals *r, size_t k) {
+  if (!fg_arc_used(r->line, r->arc, k)) return NAN;
+  if (r->of == FG_NOISE_OF_HALF_WIDTH) return r->line->half_width[k] - r->mean_half_width;
+  return fg_arc_residual(r->line, &r->arc->circle, k);
 }
 
 static double mean_half_width(const fg_datum_line *line, const fg_arc *arc) {
@@ -33,12 +40,12 @@ typedef struct lag_sums {
 
 /* Residuals of one range, 0 where a station is left out; at most RANGE_MAX of them. `used` is 1 or
  * 0. */
-static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range range, int values,
-                          double mean, double *list, double *used) {
+static size_t list_range(const arc_residuals *residuals, fg_range range, double *list,
+                         double *used) {
   size_t n = range.last - range.first + 1;
   if (n > RANGE_MAX) n = RANGE_MAX;
   for (size_t i = 0; i < n; i++) {
-    double value = residual_at(line, arc, range.first + i, values, mean);
+    double value = residual_at(residuals, range.first + i);
     used[i] = isfinite(value);
     list[i] = isfinite(value) ? value : 0;
   }
@@ -56,11 +63,12 @@ static void add_range(const double *restrict list, const double *restrict used, 
   }
 }
 
-static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, size_t lags,
+static void add_arc(const fg_datum_line *line, const fg_arc *arc, fg_noise_of of, size_t lags,
                     lag_sums *sums) {
-  double mean = values ? mean_half_width(line, arc) : 0, list[RANGE_MAX], used[RANGE_MAX];
+  const arc_residuals residuals = {line, arc, of, mean_half_width(line, arc)};
+  double list[RANGE_MAX], used[RANGE_MAX];
   for (size_t r = 0; r < arc->range_count; r++) {
-    size_t n = list_values(line, arc, arc->ranges[r], values, mean, list, used);
+    size_t n = list_range(&residuals, arc->ranges[r], list, used);
     add_range(list, used, n, lags, sums);
   }
 }
@@ -140,7 +148,7 @@ static void undo_projection(const fg_datum_line *line, const fg_arc *arc, fg_noi
   }
 }
 
-void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t count, int values,
+void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t count, fg_noise_of of,
                        fg_noise_model *noise) {
   memset(noise, 0, sizeof *noise);
   noise->integral_stations = 1;
@@ -152,7 +160,7 @@ void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t cou
   for (size_t lags = 8; lags <= FG_NOISE_LAGS; lags *= 2) {
     memset(&sums, 0, sizeof sums);
     for (size_t i = 0; i < count; i++)
-      add_arc(line, &arcs[i], values, lags, &sums);
+      add_arc(line, &arcs[i], of, lags, &sums);
     if (!(sums.pairs[0] > 4) || !(sums.products[0] > 0)) return;
     variance = sums.products[0] / sums.pairs[0];
     for (size_t lag = 0; lag < lags; lag++)

@@ -4,20 +4,13 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/spread.h"
 #include "geometry/jump.h"
 
 /* PLACES: of a jump that are tried over an arc's extent along an axis. */
-enum {
-  CIRCLE_TERMS = FG_JUMP_CIRCLE_TERMS,
-  SMOOTH_TERMS = 5,
-  PLACES = 128,
-  BUMPS_MIN = 5,
-  STATIONS_MIN = 16
-};
+enum { PLACES = 128, BUMPS_MIN = 5, STATIONS_MIN = 16 };
 /* Min share of the edges' crossings on either side of a jump. */
 #define SIDE_MIN 0.04
 /* Of noise, over both axes: places that are as good as independent, and the median over arcs of the
@@ -39,12 +32,13 @@ enum {
 /* A station of an arc. `jump` is its residual's change by a displacement of 1 of those of its edges
  * that the jump has passed. */
 typedef struct arc_station {
-  double row[CIRCLE_TERMS], residual, jump, edge_mm[2][2]; /* by edge and axis */
+  double jump, edge_mm[2][2]; /* by edge and axis */
 } arc_station;
 
 typedef struct arc_work {
   arc_station *stations;
-  size_t *next; /* per edge of a station: the next one at the same place */
+  fg_distance *distances; /* of the stations from the arc's circle */
+  size_t *next;           /* per edge of a station: the next one at the same place */
   size_t count, edges;
 } arc_work;
 
@@ -56,38 +50,21 @@ static void list_stations(const fg_datum_line *line, const fg_arc *arc, arc_work
     const fg_station *s = &line->strip->stations[k];
     fg_point p = line->points[k], first = line->is_edge ? p : s->left;
     double dx = p.x - arc->circle.x, dy = p.y - arc->circle.y, d = sqrt(dx * dx + dy * dy);
+    work->distances[work->count] = fg_distance_at(dx / d, dy / d, d - arc->circle.radius);
     work->stations[work->count++] =
-        (arc_station){.row = {dx / d, dy / d, 1},
-                      .residual = d - arc->circle.radius,
-                      .edge_mm = {{first.x, first.y}, {s->right.x, s->right.y}}};
+        (arc_station){.edge_mm = {{first.x, first.y}, {s->right.x, s->right.y}}};
   }
 }
 
-/* Fits a circle's moves, with `smooth` an oval's, too, to the residuals; the squares left. */
-static double fit_moves(const arc_work *work, bool smooth, fg_jump_sums *sums) {
-  fg_normal_equations system;
-  fg_normal_clear(&system, smooth ? SMOOTH_TERMS : CIRCLE_TERMS);
-  for (size_t i = 0; i < work->count; i++) {
-    const arc_station *s = &work->stations[i];
-    double c = s->row[0], d = s->row[1];
-    const double row[SMOOTH_TERMS] = {c, d, 1, c * c - d * d, 2 * c * d};
-    fg_normal_add(&system, row, s->residual, 1);
-  }
-  if (!fg_normal_solve(&system, 0, sums->moves, sums->inverse)) return NAN;
-  double left = system.sum_squares;
-  for (size_t k = 0; k < system.unknowns; k++)
-    left -= sums->moves[k] * system.right[k];
-  return left;
-}
-
-/* The jump passes an edge of a station. */
-static void pass_edge(arc_station *s, double share, int axis, fg_jump_sums *sums) {
-  double more = share * s->row[axis], residual = s->residual;
-  for (int k = 0; k < CIRCLE_TERMS; k++) {
-    residual -= sums->moves[k] * s->row[k];
-    sums->with_row[k] += more * s->row[k];
-  }
-  sums->with_residual += more * residual;
+/* Adds edge e, which the jump passes, to the jump's column: each edge of a station moves the datum
+ * line by its share. */
+static void pass_edge(arc_work *work, size_t e, int axis, fg_jump_sums *sums) {
+  arc_station *s = &work->stations[e / work->edges];
+  const fg_distance *distance = &work->distances[e / work->edges];
+  double more = distance->row[axis] / (double)work->edges;
+  for (int k = 0; k < FG_CIRCLE_TERMS; k++)
+    sums->with_row[k] += more * distance->row[k];
+  sums->with_residual += more * fg_jump_residual(sums, distance);
   sums->with_itself += more * (more + 2 * s->jump);
   s->jump += more;
 }
@@ -97,7 +74,7 @@ static void pass_edge(arc_station *s, double share, int axis, fg_jump_sums *sums
 typedef struct jump_search {
   fg_arc_step *step;
   double variance; /* of the noise, mm²; 0: the best place is sought */
-  double weight, sum[CIRCLE_TERMS][CIRCLE_TERMS];
+  double weight, sum[FG_CIRCLE_TERMS][FG_CIRCLE_TERMS];
 } jump_search;
 
 /* Weighs a place. Which part of the scan is displaced is open, so half of the jump moves the
@@ -106,14 +83,14 @@ static void weigh_jump(double gain, double jump_mm, int axis, const double *chan
                        jump_search *search) {
   double weight = exp((gain - search->step->gain) / (2 * search->variance));
   search->weight += weight;
-  for (int p = 0; p < CIRCLE_TERMS; p++)
-    for (int q = 0; q < CIRCLE_TERMS; q++)
+  for (int p = 0; p < FG_CIRCLE_TERMS; p++)
+    for (int q = 0; q < FG_CIRCLE_TERMS; q++)
       search->sum[p][q] += weight * change[p] * change[q];
   search->sum[axis][axis] += weight * jump_mm * jump_mm / 4;
 }
 
 static void try_jump(const fg_jump_sums *sums, int axis, jump_search *search) {
-  double change[CIRCLE_TERMS], jump_mm;
+  double change[FG_CIRCLE_TERMS], jump_mm;
   if (!fg_jump_solve(sums, axis, 0, &jump_mm, change)) return;
   double gain = sums->with_residual * jump_mm;
   if (search->variance > 0) {
@@ -124,32 +101,42 @@ static void try_jump(const fg_jump_sums *sums, int axis, jump_search *search) {
   }
 }
 
-/* Tries all places along an axis. */
-static void try_axis(arc_work *work, int axis, fg_jump_sums *sums, jump_search *search) {
-  size_t heads[PLACES], all = work->count * work->edges, passed = 0;
+static double edge_place(const arc_work *work, size_t e, int axis) {
+  return work->stations[e / work->edges].edge_mm[e % work->edges][axis];
+}
+
+/* Lists the edges by their place along an axis: heads[p] is the first edge at place p, work->next
+ * leads on from it, and the number of edges ends a list. False: all edges lie at one place. */
+static bool list_edges_by_place(arc_work *work, int axis, size_t heads[PLACES]) {
+  size_t all = work->count * work->edges;
   double min = INFINITY, max = -INFINITY;
   for (size_t e = 0; e < all; e++) {
-    double at = work->stations[e / work->edges].edge_mm[e % work->edges][axis];
+    double at = edge_place(work, e, axis);
     if (at < min) min = at;
     if (at > max) max = at;
   }
-  if (!(max > min)) return;
+  if (!(max > min)) return false;
   for (size_t p = 0; p < PLACES; p++)
     heads[p] = all;
   for (size_t e = 0; e < all; e++) {
-    double at = work->stations[e / work->edges].edge_mm[e % work->edges][axis];
-    size_t place = (size_t)((at - min) / (max - min) * (PLACES - 1));
+    size_t place = (size_t)((edge_place(work, e, axis) - min) / (max - min) * (PLACES - 1));
     work->next[e] = heads[place];
     heads[place] = e;
   }
-  sums->with_residual = sums->with_itself = 0;
-  memset(sums->with_row, 0, sizeof sums->with_row);
+  return true;
+}
+
+/* Tries all places along an axis. */
+static void try_axis(arc_work *work, int axis, fg_jump_sums *sums, jump_search *search) {
+  size_t heads[PLACES], all = work->count * work->edges, passed = 0;
+  if (!list_edges_by_place(work, axis, heads)) return;
+  fg_jump_clear(sums);
   for (size_t i = 0; i < work->count; i++)
     work->stations[i].jump = 0;
-  double share = 1 / (double)work->edges, margin = SIDE_MIN * (double)all;
+  double margin = SIDE_MIN * (double)all;
   for (size_t p = PLACES; p-- > 0;) {
     for (size_t e = heads[p]; e < all; e = work->next[e], passed++)
-      pass_edge(&work->stations[e / work->edges], share, axis, sums);
+      pass_edge(work, e, axis, sums);
     if ((double)passed > margin && (double)(all - passed) > margin) try_jump(sums, axis, search);
   }
 }
@@ -160,13 +147,16 @@ static void search_arc(const fg_datum_line *line, double variance, arc_work *wor
   jump_search search = {.step = &arc->step, .variance = variance};
   list_stations(line, arc, work);
   if (work->count < STATIONS_MIN) return;
-  double oval = variance > 0 ? fit_moves(work, true, &sums) : 0;
-  double circle = fit_moves(work, false, &sums);
+  const fg_distance *distances = work->distances;
+  double oval = 0, circle;
+  if (variance > 0)
+    oval = fg_distances_fit(distances, work->count, FG_OVAL_TERMS, sums.moves, NULL);
+  circle = fg_distances_fit(distances, work->count, FG_CIRCLE_TERMS, sums.moves, sums.inverse);
   if (!isfinite(oval + circle)) return;
   for (int axis = 0; axis < 2; axis++)
     try_axis(work, axis, &sums, &search);
-  for (int p = 0; search.weight > 0 && p < CIRCLE_TERMS; p++)
-    for (int q = 0; q < CIRCLE_TERMS; q++)
+  for (int p = 0; search.weight > 0 && p < FG_CIRCLE_TERMS; p++)
+    for (int q = 0; q < FG_CIRCLE_TERMS; q++)
       arc->step.covariance[p][q] = search.sum[p][q] / search.weight;
   if (variance > 0)
     arc->step.smooth_gain = circle - oval;
@@ -209,6 +199,7 @@ fg_status fg_arc_steps_find(fg_context *ctx, fg_layout *layout) {
   double *values = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *work.stations, (void **)&work.stations));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *work.distances, (void **)&work.distances));
   FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * stations, sizeof *work.next, (void **)&work.next));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof *values, (void **)&values));
   for (size_t i = 0; i < bumps; i++) {
@@ -224,6 +215,7 @@ fg_status fg_arc_steps_find(fg_context *ctx, fg_layout *layout) {
   }
 exit:
   free(work.stations);
+  free(work.distances);
   free(work.next);
   free(values);
   return status;

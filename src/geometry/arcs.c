@@ -12,6 +12,12 @@
 #define OUTLIER_SIGMAS 5.0
 #define OUTLIER_MIN_MM 0.0003
 enum { POINTS_MIN = 8, ROUNDS_MAX = 6 };
+/* Departures from an arc's circle that are its fillet and no noise: from this many of its scatter
+ * on, but no less than FOOT_MIN_MM, and over FOOT_REACH_MM, where a fillet's departure is still
+ * parabolic. */
+#define FOOT_SCATTERS 4.0
+#define FOOT_MIN_MM   0.0004
+#define FOOT_REACH_MM 0.02
 
 fg_status fg_datum_line_build(fg_context *ctx, const fg_strip *strip, fg_datum datum,
                               bool inner_is_right, fg_datum_line *line) {
@@ -193,42 +199,49 @@ fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *ar
   return fit_robustly(ctx, line, by_estimate, arc);
 }
 
-/* Mean departure over a few stations beyond `at`, in the direction `step`; NaN outside. */
-static double departure_mm(const fg_datum_line *line, const fg_arc *arc, double side, long at,
-                           long step, long low, long high) {
+/* Stations from low to high where the line may leave an arc's circle to one side, in the direction
+ * of `step`, 1 or -1. */
+typedef struct foot_search {
+  const fg_datum_line *line;
+  const fg_arc *arc;
+  double side;
+  long step, low, high;
+} foot_search;
+
+/* Mean departure over a few stations from `at` on; NaN outside. */
+static double departure_mm(const foot_search *s, long at) {
   enum { MEAN_STATIONS = 3 };
   double sum = 0;
   int n = 0;
   for (int i = 0; i < MEAN_STATIONS; i++) {
-    long k = at + step * i;
-    if (k < low || k > high) break;
-    double r = fg_arc_residual(line, &arc->circle, (size_t)k);
+    long k = at + s->step * i;
+    if (k < s->low || k > s->high) break;
+    double r = fg_arc_residual(s->line, &s->arc->circle, (size_t)k);
     if (!isfinite(r)) continue;
-    sum += side * r;
+    sum += s->side * r;
     n++;
   }
   return n ? sum / n : NAN;
 }
 
 /* The tangent point beyond the core's end, in stations from it: the foot of sqrt(departure). */
-static double find_foot(const fg_datum_line *line, const fg_arc *arc, double side, long end,
-                        long step, long low, long high) {
-  double min = fmax(4 * arc->scatter_mm, 0.0004), max = min + 0.02;
+static double find_foot(const foot_search *s, long end) {
+  double min = fmax(FOOT_SCATTERS * s->arc->scatter_mm, FOOT_MIN_MM), max = min + FOOT_REACH_MM;
   double s0 = 0, s1 = 0, s2 = 0, r0 = 0, r1 = 0;
   long k = end;
-  for (; k >= low && k <= high; k += step) {
-    double d = departure_mm(line, arc, side, k, step, low, high);
+  for (; k >= s->low && k <= s->high; k += s->step) {
+    double d = departure_mm(s, k);
     if (d > max) break;
     if (d < min) s0 = s1 = s2 = r0 = r1 = 0; /* noise, not yet the fillet */
     if (!(d >= min)) continue;
-    double x = (double)((k - end) * step), y = sqrt(d);
+    double x = (double)((k - end) * s->step), y = sqrt(d);
     s0 += 1;
     s1 += x;
     s2 += x * x;
     r0 += y;
     r1 += x * y;
   }
-  double determinant = s0 * s2 - s1 * s1, reach = (double)((k - end) * step);
+  double determinant = s0 * s2 - s1 * s1, reach = (double)((k - end) * s->step);
   if (s0 < 3 || determinant <= 0) return reach;
   double slope = (s0 * r1 - s1 * r0) / determinant, level = (r0 - slope * s1) / s0;
   /* The mean over stations ahead sees the departure one station early. */
@@ -242,8 +255,10 @@ void fg_arc_grow(const fg_datum_line *line, const fg_arc *arc, double side, fg_r
   /* Start inside the core: its ends may already lie on the fillets. */
   long inset = (long)(range->last - range->first) / 6;
   long a = (long)range->first + inset, b = (long)range->last - inset;
-  double back = find_foot(line, arc, side, a, -1, low, high) - margin;
-  double ahead = find_foot(line, arc, side, b, 1, low, high) - margin;
+  foot_search search = {line, arc, side, -1, low, high};
+  double back = find_foot(&search, a) - margin;
+  search.step = 1;
+  double ahead = find_foot(&search, b) - margin;
   long first = a - (long)floor(back), last = b + (long)floor(ahead);
   if (first < low) first = low;
   if (last > high) last = high;

@@ -85,8 +85,11 @@ typedef struct fg_noise_model {
   double integral_stations;         /* 1 + 2 sum of autocorrelation */
 } fg_noise_model;
 
-/* `values` selects the residual: 0 of the datum line, 1 of the half width (its mean removed). */
-void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t count, int values,
+/* Residuals that noise is estimated from: of the datum line from its circle, or of the half width
+ * from its mean. */
+typedef enum fg_noise_of { FG_NOISE_OF_LINE, FG_NOISE_OF_HALF_WIDTH } fg_noise_of;
+
+void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t count, fg_noise_of of,
                        fg_noise_model *noise);
 
 /* Covariance of (x, y, R) of one arc under a noise model: A (sum_ij x_i x_j' c_|i-j|) A. Where the

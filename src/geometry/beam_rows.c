@@ -22,7 +22,7 @@ enum { CUBIC = 4, COLUMNS = CUBIC + FG_BEAM_JUMPS_MAX, STATIONS_MIN = 40, REACH 
 #define GAIN_MIN     40.0
 #define JUMP_MIN_ROW 0.5
 #define CUT_SIGMAS   6.0 /* residuals are clipped here: dust */
-/* An edge is tested where the expected step is so many of its sd; the step may differ by that
+/* An edge is tested where the expected step is this many of its sd; the step may differ by this
  * share. */
 #define TESTED_SIGMAS 4.0
 #define STEP_SHARE    0.5

@@ -320,18 +320,18 @@ static fg_status measure_beam(fg_context *ctx, const fg_design *design, const fg
 /* Sets the foil's scatter: the median of its beams'. */
 static void fill_foil_noise(fg_foil *foil, const fg_beam_noise *noises, double *scratch) {
   size_t n = 0;
-  foil->noise_um = foil->correlation_mm = NAN;
+  foil->noise.sd_um = foil->noise.correlation_mm = NAN;
   for (size_t i = 0; i < foil->beam_count; i++)
     if (noises[i].lags) scratch[n++] = 1000 * sqrt(noises[i].covariance[0]);
   if (!n) return;
-  foil->noise_um = fg_upper_median(scratch, n);
+  foil->noise.sd_um = fg_upper_median(scratch, n);
   n = 0;
   for (size_t i = 0; i < foil->beam_count; i++)
     if (noises[i].lags) scratch[n++] = fg_beam_noise_length(&noises[i]) / noises[i].step_mm;
   double steps = fg_upper_median(scratch, n), step = 0;
   for (size_t i = 0; i < foil->beam_count; i++)
     if (noises[i].lags) step = noises[i].step_mm;
-  foil->correlation_mm = steps * step;
+  foil->noise.correlation_mm = steps * step;
   if (steps > ROUGH_STEPS) foil->flags |= FG_FOIL_ROUGH_EDGE;
 }
 

@@ -9,7 +9,7 @@
 #include "core/select.h"
 #include "core/spread.h"
 
-/* A bump is no circle where its scatter exceeds the median by this share and by so many standard
+/* A bump is no circle where its scatter exceeds the median by this share and by this many standard
  * deviations among the bumps. */
 #define POOR_SHARE  0.3
 #define POOR_SIGMAS 4.0
@@ -32,7 +32,7 @@ void fg_misfit_widen(const fg_datum_line *line, double rms_limit_mm, fg_arc *arc
   fg_noise_model own;
   fg_arc misfit = *arc;
   if (!(arc->rms_mm > rms_limit_mm)) return;
-  fg_noise_estimate(line, arc, 1, 0, &own);
+  fg_noise_estimate(line, arc, 1, FG_NOISE_OF_LINE, &own);
   fg_arc_covariance(line, &own, &misfit);
   if (misfit.covariance[2][2] > arc->covariance[2][2])
     memcpy(arc->covariance, misfit.covariance, sizeof arc->covariance);

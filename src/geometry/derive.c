@@ -235,11 +235,11 @@ void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_
 }
 
 fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil) {
-  if (!(foil->thickness_mm > 0) || !isfinite(foil->thickness_mm))
+  if (!(foil->thickness.mm > 0) || !isfinite(foil->thickness.mm))
     return (fg_thickness){.mm = design->thickness_mm};
   bool edge = design->datum != FG_DATUM_MID;
-  return (fg_thickness){.mm = foil->thickness_mm,
-                        .u_mm = foil->u_thickness_mm,
+  return (fg_thickness){.mm = foil->thickness.mm,
+                        .u_mm = foil->thickness.u_mm,
                         .edge_mm = edge ? fg_foil_edge_u_mm(design, foil) : 0,
                         .inner = design->datum == FG_DATUM_INNER,
                         .with_edge = !(design->thickness_measured_mm > 0)};

@@ -26,7 +26,7 @@
 #define CRUSHED_HEIGHT 0.6
 #define CRUSHED_RADIUS 1.6
 #define OUTLIER_SHARE  0.02
-/* Below so many blurs of width, no plateau is left between the edges. */
+/* Below this many blurs of width, no plateau is left between the edges. */
 #define COARSE_WIDTHS 2.0
 /* Springback moves the overall radius by less than this factor, and the thickness by nothing. */
 #define SCALE_FACTOR 1.2
@@ -59,9 +59,9 @@ void fg_foil_give_up(fg_foil *foil, const char *why) {
   foil->flags |= FG_FOIL_NOT_MEASURED;
   snprintf(foil->error, sizeof foil->error, "%s", why);
   foil->rotation_deg = NAN;
-  foil->thickness_mm = foil->u_thickness_mm = NAN;
-  foil->thickness_scan_mm = foil->u_thickness_scan_mm = foil->u_thickness_tone_mm = NAN;
-  foil->noise_um = foil->correlation_mm = foil->edge_model_um = NAN;
+  foil->thickness.mm = foil->thickness.u_mm = NAN;
+  foil->thickness.scan_mm = foil->thickness.u_scan_mm = foil->thickness.u_tone_mm = NAN;
+  foil->noise.sd_um = foil->noise.correlation_mm = foil->noise.edge_model_um = NAN;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
   forget_overall(&foil->overall);
@@ -275,12 +275,13 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
   const fg_foil_row *kind = fg_foil_row_of(design->kind);
   fg_layout layout;
   const char *error;
-  foil->thickness_mm = foil->thickness_scan_mm = foil->strip.thickness_mm;
-  foil->u_thickness_mm = foil->u_thickness_scan_mm = foil->strip.u_thickness_mm;
+  foil->thickness.mm = foil->thickness.scan_mm = foil->strip.thickness_mm;
+  foil->thickness.u_mm = foil->thickness.u_scan_mm = foil->strip.u_thickness_mm;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
   take_over_facts(foil);
-  if (fg_foil_widths_in_blurs(foil) < COARSE_WIDTHS) foil->flags |= FG_FOIL_COARSE_RESOLUTION;
+  if (fg_strip_widths_in_blurs(&foil->strip) < COARSE_WIDTHS)
+    foil->flags |= FG_FOIL_COARSE_RESOLUTION;
   FG_TRY(kind->lay_out(ctx, design, threads, foil, &layout, &error));
   fg_status status = FG_OK;
   double factor;
@@ -324,6 +325,11 @@ void fg_disc_free(fg_disc *disc) {
   free(disc->residual_um);
   free(disc->stations);
   memset(disc, 0, sizeof *disc);
+}
+
+void fg_measurement_size_mm(const fg_measurement *measurement, double size_mm[2]) {
+  size_mm[0] = (double)measurement->file.width_px * 25.4 / measurement->dpi[0];
+  size_mm[1] = (double)measurement->file.height_px * 25.4 / measurement->dpi[1];
 }
 
 void fg_measurement_free(fg_measurement *measurement) {

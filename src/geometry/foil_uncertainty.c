@@ -19,9 +19,9 @@
 /* Min half-width shift of the overall circle, in standard deviations: it has a single one, no mean
  * of many. */
 #define OVERALL_SHIFT_SIGMAS 3.0
-/* Width, in blurs, below which both edges blur into each other and the line's place depends on the
- * shape of the blur: the share grows with the cube of the blur (reports/accuracy_hard.md). */
-#define LINE_SHIFT_WIDTHS 3.0
+/* Thickness, in blurs, below which both edges blur into each other and their places depend on the
+ * shape of the blur. */
+#define PLATEAU_BLURS 3.0
 /* Correlation length, in stations, above which an edge is rough. */
 #define ROUGH_STATIONS 3.0
 
@@ -100,9 +100,16 @@ static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half
       layout->overall.covariance[p][q] += (1 - 1 / ratio) * shift[p] * shift[q];
 }
 
-double fg_foil_widths_in_blurs(const fg_foil *foil) {
-  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
-  return 1000 * foil->strip.thickness_mm / blur_um;
+double fg_strip_blur_um(const fg_strip *strip) {
+  return fmax(strip->blur_left_um, strip->blur_right_um);
+}
+
+double fg_strip_widths_in_blurs(const fg_strip *strip) {
+  return 1000 * strip->thickness_mm / fg_strip_blur_um(strip);
+}
+
+double fg_strip_coarseness(const fg_strip *strip) {
+  return pow(fmax(1, PLATEAU_BLURS / fg_strip_widths_in_blurs(strip)), 3);
 }
 
 /* Adds the edge model's own error: a shift of the whole line along its normal. It moves the radius
@@ -110,10 +117,10 @@ double fg_foil_widths_in_blurs(const fg_foil *foil) {
  * edge that is the datum, but not the middle of two edges. */
 static void add_line_shift(const fg_layout *layout, const fg_design *design, const fg_foil *foil,
                            fg_arc *arc) {
-  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
-  double overlap = fmax(1, LINE_SHIFT_WIDTHS / fg_foil_widths_in_blurs(foil));
-  double shift_mm = FG_LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
-  double loss_mm = layout->line.is_edge ? foil->strip.loss_um / 1000 : 0;
+  const fg_strip *strip = &foil->strip;
+  double shift_mm =
+      FG_LINE_SHIFT_BLURS * fg_strip_coarseness(strip) * fg_strip_blur_um(strip) / 1000;
+  double loss_mm = layout->line.is_edge ? strip->loss_um / 1000 : 0;
   double edge_mm = layout->line.is_edge ? fg_foil_edge_u_mm(design, foil) : 0;
   arc->covariance[2][2] += shift_mm * shift_mm + loss_mm * loss_mm + edge_mm * edge_mm;
 }
@@ -128,8 +135,8 @@ static void widen_by_loss(const fg_foil *foil, fg_arc *arc) {
 static void find_overall_covariance(fg_layout *layout, const fg_design *design,
                                     const fg_foil *foil) {
   fg_noise_model noise, half_width;
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, FG_NOISE_OF_LINE, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, FG_NOISE_OF_HALF_WIDTH, &half_width);
   fg_arc_covariance(&layout->line, &noise, &layout->overall);
   fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
   widen_by_loss(foil, &layout->overall);
@@ -151,13 +158,13 @@ static double pixel_variance(const fg_strip *strip) {
 
 void fg_foil_find_arc_uncertainty(fg_layout *layout, const fg_design *design, fg_foil *foil) {
   fg_noise_model noise, half_width;
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, FG_NOISE_OF_LINE, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, FG_NOISE_OF_HALF_WIDTH, &half_width);
   double edge = noise.covariance[0] + half_width.covariance[0];
-  foil->noise_um = 1000 * sqrt(noise.covariance[0]);
-  foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
-  foil->edge_rough_um = 1000 * sqrt(fmax(edge - pixel_variance(&foil->strip), 0));
-  foil->edge_model_um = 0;
+  foil->noise.sd_um = 1000 * sqrt(noise.covariance[0]);
+  foil->noise.correlation_mm = noise.integral_stations * foil->strip.step_mm;
+  foil->noise.edge_rough_um = 1000 * sqrt(fmax(edge - pixel_variance(&foil->strip), 0));
+  foil->noise.edge_model_um = 0;
   if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
   find_overall_covariance(layout, design, foil);
   fg_arc_add_shadow(&layout->line, &layout->overall);
@@ -186,16 +193,16 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, const f
   double systematic[3][3];
   FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *arcs, (void **)&arcs));
   size_t count = gather_bumps(layout, arcs);
-  fg_noise_estimate(&layout->line, arcs, count, 0, &noise);
-  fg_noise_estimate(&layout->line, arcs, count, 1, &half_width);
+  fg_noise_estimate(&layout->line, arcs, count, FG_NOISE_OF_LINE, &noise);
+  fg_noise_estimate(&layout->line, arcs, count, FG_NOISE_OF_HALF_WIDTH, &half_width);
   free(arcs);
-  foil->noise_um = 1000 * sqrt(noise.covariance[0]);
-  foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
+  foil->noise.sd_um = 1000 * sqrt(noise.covariance[0]);
+  foil->noise.correlation_mm = noise.integral_stations * foil->strip.step_mm;
   if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
   double rms_limit_mm = fg_misfit_rms_limit(ctx, layout);
   FG_TRY(fg_arc_steps_find(ctx, layout));
   bool found = find_edge_model(layout, &half_width, systematic);
-  foil->edge_model_um = found ? 1000 * sqrt(fmax(systematic[2][2], 0)) : 0;
+  foil->noise.edge_model_um = found ? 1000 * sqrt(fmax(systematic[2][2], 0)) : 0;
   for (size_t i = 0; i < layout->turning.bump_count; i++) {
     if (!layout->fitted[i]) continue;
     fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
@@ -235,25 +242,25 @@ double fg_foil_width_u_um(const fg_design *design, const fg_foil *foil) {
 static void check_thickness(const fg_design *design, fg_foil *foil) {
   bool stated = design->thickness_measured_mm > 0;
   double expected = stated ? design->thickness_measured_mm : design->thickness_mm;
-  double u = stated ? hypot(foil->u_thickness_scan_mm, design->u_thickness_measured_mm)
-                    : foil->u_thickness_scan_mm;
-  double off = fabs(foil->thickness_scan_mm - expected);
+  double u = stated ? hypot(foil->thickness.u_scan_mm, design->u_thickness_measured_mm)
+                    : foil->thickness.u_scan_mm;
+  double off = fabs(foil->thickness.scan_mm - expected);
   if (!(off > COVERAGE * u)) return;
   if (stated) {
     foil->flags |= FG_FOIL_THICKNESS_CONTRADICTS;
     /* Either may be wrong: the value may be off by as much as they differ. */
-    foil->u_thickness_mm = hypot(foil->u_thickness_mm, off);
+    foil->thickness.u_mm = hypot(foil->thickness.u_mm, off);
   } else if (off > OTHER_THICKNESS_SHARE * expected)
     foil->flags |= FG_FOIL_OTHER_THICKNESS;
 }
 
 void fg_foil_find_thickness(const fg_design *design, fg_foil *foil) {
   double u_mm_of_level = fg_foil_width_u_um(design, foil) / 1000;
-  foil->thickness_scan_mm = foil->strip.thickness_mm;
-  foil->u_thickness_scan_mm = hypot(foil->strip.u_thickness_mm, u_mm_of_level);
-  foil->u_thickness_tone_mm = fg_foil_tone_u_um(design, foil) / 1000;
+  foil->thickness.scan_mm = foil->strip.thickness_mm;
+  foil->thickness.u_scan_mm = hypot(foil->strip.u_thickness_mm, u_mm_of_level);
+  foil->thickness.u_tone_mm = fg_foil_tone_u_um(design, foil) / 1000;
   bool stated = design->thickness_measured_mm > 0;
-  foil->thickness_mm = stated ? design->thickness_measured_mm : foil->thickness_scan_mm;
-  foil->u_thickness_mm = stated ? design->u_thickness_measured_mm : foil->u_thickness_scan_mm;
+  foil->thickness.mm = stated ? design->thickness_measured_mm : foil->thickness.scan_mm;
+  foil->thickness.u_mm = stated ? design->u_thickness_measured_mm : foil->thickness.u_scan_mm;
   check_thickness(design, foil);
 }

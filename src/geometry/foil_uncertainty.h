@@ -32,7 +32,4 @@ double fg_foil_edge_u_mm(const fg_design *design, const fg_foil *foil);
  * its edges are set already. */
 void fg_foil_find_thickness(const fg_design *design, fg_foil *foil);
 
-/* The strip's thickness in units of the edges' blur. */
-double fg_foil_widths_in_blurs(const fg_foil *foil);
-
 #endif

@@ -79,7 +79,7 @@ static fg_status check_pitch(fg_context *ctx, const fg_design *design) {
   return FG_OK;
 }
 
-/* Strip and bearing: what has no place. */
+/* Strip and bearing: the quantities that no bump has. */
 static fg_status check_bearing(fg_context *ctx, const fg_design *design) {
   if (design->thickness_mm >= design->bumps.radius_mm)
     return fg_fail(ctx, FG_ERR_DATA, "thickness_mm is %g; it must be below bump_radius_mm %g",

@@ -24,14 +24,22 @@ static void fill_residuals(const fg_layout *layout, const fg_arc *arc, size_t k,
       (float)(1000 * (fg_circle_distance(&arc->circle, s->right) - middle - right + shift));
 }
 
-static void label_arc(const fg_layout *layout, const fg_arc *arc, fg_range range, fg_datum datum,
-                      fg_arc_kind kind, int number, fg_foil *foil) {
-  for (size_t k = range.first; k <= range.last; k++) {
+/* A land or a bump: its stations, and the arc that they are held against. */
+typedef struct labelled_arc {
+  const fg_arc *arc;
+  fg_range range;
+  fg_arc_kind kind;
+  int number;
+} labelled_arc;
+
+static void label_arc(const fg_layout *layout, const labelled_arc *part, fg_datum datum,
+                      fg_foil *foil) {
+  for (size_t k = part->range.first; k <= part->range.last; k++) {
     fg_station_label *label = &foil->labels[k];
-    label->kind = kind;
-    label->number = number;
-    label->fitted = fg_arc_used(&layout->line, arc, k);
-    fill_residuals(layout, arc, k, datum, kind == FG_ARC_BUMP, label);
+    label->kind = part->kind;
+    label->number = part->number;
+    label->fitted = fg_arc_used(&layout->line, part->arc, k);
+    fill_residuals(layout, part->arc, k, datum, part->kind == FG_ARC_BUMP, label);
   }
 }
 
@@ -73,13 +81,15 @@ fg_status fg_labels_fill(fg_context *ctx, const fg_layout *layout, fg_datum datu
                   foil->bumps[0].arc_start_mm > foil->bumps[foil->bump_count - 1].arc_start_mm;
   for (size_t i = 0; i < layout->land_count; i++) {
     int number = (int)(reversed ? layout->land_count - i : i + 1);
-    label_arc(layout, &layout->overall, layout->lands[i], datum, FG_ARC_LAND, number, foil);
+    const labelled_arc land = {&layout->overall, layout->lands[i], FG_ARC_LAND, number};
+    label_arc(layout, &land, datum, foil);
   }
   for (size_t i = 0; i < layout->turning.bump_count; i++)
     if (layout->fitted[i]) {
       fg_range range = layout->bump_ranges[i];
-      label_arc(layout, &layout->bumps[i], range, datum, FG_ARC_BUMP,
-                bump_number_at(foil, foil->strip.stations[range.first].s_mm), foil);
+      int number = bump_number_at(foil, foil->strip.stations[range.first].s_mm);
+      const labelled_arc bump = {&layout->bumps[i], range, FG_ARC_BUMP, number};
+      label_arc(layout, &bump, datum, foil);
     }
   label_remaining(layout, foil);
   return FG_OK;

@@ -8,7 +8,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/select.h"
-#include "core/small_solve.h"
 
 enum { GROW_ROUNDS = 3, LAND_POINTS_MIN = 24, GAPS_MAX = 512 };
 /* Limits of an arc's end inside and outside the turning point, and its place beyond them. */
@@ -149,58 +148,45 @@ static size_t usual_land(const fg_layout *layout) {
   return n ? (size_t)fg_select(lengths, n, n / 2) : 0;
 }
 
-/* Terms of a land's distance from the circle by its direction: moves of the circle, and an oval. */
-enum { OVAL_TERMS = 5 };
-static void oval_row(const fg_layout *layout, fg_range land, double row[OVAL_TERMS]) {
+fg_distance fg_layout_land_distance(const fg_layout *layout, fg_range land) {
   const fg_circle *circle = &layout->overall.circle;
   fg_point p = fg_strip_middle(layout->line.strip, (land.first + land.last) / 2);
-  double psi = atan2(p.y - circle->y, p.x - circle->x);
-  const double terms[OVAL_TERMS] = {1, cos(psi), sin(psi), cos(2 * psi), sin(2 * psi)};
-  memcpy(row, terms, sizeof terms);
-}
-
-double fg_layout_land_distance(const fg_layout *layout, fg_range land) {
-  double sum = 0, n = 0;
+  double dx = p.x - circle->x, dy = p.y - circle->y, d = hypot(dx, dy), sum = 0, n = 0;
   for (size_t k = land.first; k <= land.last; k++) {
-    double r = fg_arc_residual(&layout->line, &layout->overall.circle, k);
+    double r = fg_arc_residual(&layout->line, circle, k);
     if (!isfinite(r)) continue;
     sum += r;
     n++;
   }
-  return sum / n;
+  return fg_distance_at(dx / d, dy / d, sum / n);
 }
 
 /* Fits an oval to the mean distances of the lands found. */
 static bool fit_oval(const fg_layout *layout, double oval[FG_SMALL_MAX]) {
-  fg_normal_equations system;
-  size_t lands = 0;
-  fg_normal_clear(&system, OVAL_TERMS);
-  for (size_t i = 0; i <= layout->turning.bump_count; i++) {
-    double row[OVAL_TERMS], distance_mm;
+  fg_distance distances[GAPS_MAX];
+  size_t n = 0;
+  for (size_t i = 0; i <= layout->turning.bump_count && n < GAPS_MAX; i++) {
     if (!layout->lands[i].last) continue;
-    distance_mm = fg_layout_land_distance(layout, layout->lands[i]);
-    if (!isfinite(distance_mm)) continue;
-    oval_row(layout, layout->lands[i], row);
-    fg_normal_add(&system, row, distance_mm, 1);
-    lands++;
+    distances[n] = fg_layout_land_distance(layout, layout->lands[i]);
+    n += isfinite(distances[n].mm);
   }
-  return lands > OVAL_TERMS && fg_normal_solve(&system, 0, oval, NULL);
+  return n > FG_OVAL_TERMS && isfinite(fg_distances_fit(distances, n, FG_OVAL_TERMS, oval, NULL));
 }
 
 /* Finds a land that lies away from the circle of the others as a whole. Of an oval foil it belongs
  * to the circle, which is the one through the part as it is; else the line has jumped. */
 static void find_displaced(fg_layout *layout, const double *oval, size_t usual, size_t i) {
   fg_range *land = &layout->lands[i], gap = gap_bounds(layout, i), found;
-  double distance_mm = 0, row[OVAL_TERMS], expected_mm = 0;
+  double distance_mm = 0, expected_mm = 0;
   if (2 * (land->last - land->first) >= usual) return;
   fg_range along = find_along(layout, gap, &distance_mm);
   if (2 * (along.last - along.first) < usual) return;
   if (!grow_land(layout, gap, along, distance_mm, &found) || 2 * (found.last - found.first) < usual)
     return;
-  oval_row(layout, found, row);
-  for (int k = 0; oval && k < OVAL_TERMS; k++)
-    expected_mm += oval[k] * row[k];
-  double off_mm = fg_layout_land_distance(layout, found) - expected_mm;
+  const fg_distance distance = fg_layout_land_distance(layout, found);
+  for (int k = 0; oval && k < FG_OVAL_TERMS; k++)
+    expected_mm += oval[k] * distance.row[k];
+  double off_mm = distance.mm - expected_mm;
   if (fabs(off_mm) < near_limit(layout)) {
     *land = found;
   } else {

@@ -4,6 +4,7 @@
 #define FG_GEOMETRY_LAYOUT_H
 
 #include "geometry/arcs.h"
+#include "geometry/jump.h"
 #include "geometry/turning.h"
 
 /* A jump of the scan between lands. */
@@ -35,9 +36,9 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
 
 void fg_layout_free(fg_layout *layout);
 
-/* Returns the mean distance of a land's stations from the overall circle, mm, outwards; NaN: it has
- * none. */
-double fg_layout_land_distance(const fg_layout *layout, fg_range land);
+/* Returns the mean distance of a land's stations from the overall circle, in the direction of its
+ * middle; its mm are NaN where it has none. */
+fg_distance fg_layout_land_distance(const fg_layout *layout, fg_range land);
 
 /* Fills `overall` from its circle's fit, without the contribution of the pixels' noise to its
  * covariance. */

@@ -94,7 +94,8 @@ static void find_own_columns(const grid_problem *problem, const grid_columns *co
     own[k] = k >= GRID_POSE && board_prior(problem, row->scan, k) == 0 ? 0 : value[k];
 }
 
-/* Fits a scan's own unknowns to what the solution of the other scans leaves of its marks. */
+/* Fits a scan's own unknowns to the residuals that the solution of the other scans leaves at its
+ * marks. */
 static bool fit_own(const grid_problem *problem, const grid_solution *solution, size_t scan,
                     double x[OWN]) {
   fg_normal_equations system;

@@ -230,30 +230,38 @@ static fg_status read_certificate(fg_context *ctx, const fg_measurement *measure
   return FG_OK;
 }
 
+/* Finds the place of a mark on its board; false: the mark is not used, or the board has no such
+ * place. */
+static bool find_place_of_mark(const grid_problem *problem, size_t scan, const fg_mark *mark,
+                               fg_point *place) {
+  double pitch = problem->board[problem->board_of[scan]].pitch_mm;
+  int index[2];
+  if (!mark->used) return false;
+  fg_grid_board_index(problem, scan, mark, index);
+  return find_board_place(problem, pitch, index, place);
+}
+
 /* The pose that lays the board's places nearest to the measured ones. */
 static void find_pose(const grid_problem *problem, size_t scan, const fg_grid *grid,
                       grid_pose *pose) {
   double n = 0, mean[4] = {0}, dot = 0, cross = 0;
-  double pitch = problem->board[problem->board_of[scan]].pitch_mm;
-  for (int pass = 0; pass < 2; pass++)
-    for (size_t i = 0; i < grid->count; i++) {
-      const fg_mark *m = &grid->marks[i];
-      int index[2];
-      if (!m->used) continue;
-      fg_grid_board_index(problem, scan, m, index);
-      fg_point place;
-      if (!find_board_place(problem, pitch, index, &place)) continue;
-      double v[4] = {place.x, place.y, m->at_mm.x, m->at_mm.y};
-      if (pass == 0) {
-        n++;
-        for (int k = 0; k < 4; k++)
-          mean[k] += (v[k] - mean[k]) / n;
-        continue;
-      }
-      double px = v[0] - mean[0], py = v[1] - mean[1], x = v[2] - mean[2], y = v[3] - mean[3];
-      dot += px * x + py * y;
-      cross += px * y - py * x;
-    }
+  fg_point place;
+  for (size_t i = 0; i < grid->count; i++) {
+    const fg_mark *m = &grid->marks[i];
+    if (!find_place_of_mark(problem, scan, m, &place)) continue;
+    const double values[4] = {place.x, place.y, m->at_mm.x, m->at_mm.y};
+    n++;
+    for (int k = 0; k < 4; k++)
+      mean[k] += (values[k] - mean[k]) / n;
+  }
+  for (size_t i = 0; i < grid->count; i++) {
+    const fg_mark *m = &grid->marks[i];
+    if (!find_place_of_mark(problem, scan, m, &place)) continue;
+    double px = place.x - mean[0], py = place.y - mean[1];
+    double x = m->at_mm.x - mean[2], y = m->at_mm.y - mean[3];
+    dot += px * x + py * y;
+    cross += px * y - py * x;
+  }
   pose->turn_rad = atan2(cross, dot);
   fg_point middle = turned_by(pose->turn_rad, (fg_point){mean[0], mean[1]});
   pose->origin = (fg_point){mean[2] - middle.x, mean[3] - middle.y};
@@ -261,15 +269,11 @@ static void find_pose(const grid_problem *problem, size_t scan, const fg_grid *g
 
 static fg_status add_scan_rows(const fg_grid *grid, size_t scan, grid_problem *problem) {
   const grid_pose *pose = &problem->pose[scan];
-  double pitch = problem->board[problem->board_of[scan]].pitch_mm;
   int components = grid->kind == FG_MARKS_LINES ? 1 : 2;
   for (size_t i = 0; i < grid->count; i++) {
     const fg_mark *m = &grid->marks[i];
-    int index[2];
-    if (!m->used) continue;
-    fg_grid_board_index(problem, scan, m, index);
     fg_point place;
-    if (!find_board_place(problem, pitch, index, &place)) continue;
+    if (!find_place_of_mark(problem, scan, m, &place)) continue;
     fg_point arm = turned_by(pose->turn_rad, place);
     fg_point off = {pose->origin.x + arm.x - m->at_mm.x, pose->origin.y + arm.y - m->at_mm.y};
     for (int k = 0; k < components; k++) {

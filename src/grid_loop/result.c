@@ -14,7 +14,7 @@
 #define FOUND_Z    3.0
 #define TIED_SHARE 0.3
 #define U_PRIOR    0.01
-/* A board is turned enough where its rows climb by so many pitches. */
+/* A board is turned enough where its rows climb by this many pitches. */
 #define TELLING_PITCHES 1.0
 /* Columns and rows of the reported map. */
 enum { MAP_SIDE_MAX = 15 };

@@ -267,8 +267,8 @@ static bool move_effect(grid_effect *effect, const double *estimate) {
   return true;
 }
 
-/* Moves loose shapes by what the solution says; `fixed` becomes true for those that do not
- * converge.
+/* Moves loose shapes by the changes that the solution has for them; `fixed` becomes true for those
+ * that do not converge.
  */
 static void move_loose_shapes(grid_problem *problem, const grid_solution *solution, bool *fixed) {
   size_t at = solution->columns.effect;

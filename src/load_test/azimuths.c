@@ -17,7 +17,7 @@ static const double same_axis_deg = 1;
 enum { SECOND_ORDER_AXES_MIN = 3, FOURTH_ORDER_AXES_MIN = 6 };
 
 /* An axis is named when noise alone would make one with less than this probability, and when no
- * other minimum lies within so many standard uncertainties of it. */
+ * other minimum lies within this many standard uncertainties of it. */
 static const double p_axis = 0.01, rival_reach = 2;
 
 enum { STEPS = 720, COEFFICIENTS_MAX = 1 + FG_LOAD_ORDER_MAX, KNOWN_DOF = 1000000 };

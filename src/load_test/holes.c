@@ -6,7 +6,7 @@
 #include "load_test/strokes.h"
 
 /* Number of distances between places that a stretch is compared with on either side; places within
- * so many resolutions are one, as those of a rotor at rest under a weight. */
+ * this many resolutions are one, as those of a rotor at rest under a weight. */
 enum { AROUND = 24, AROUND_MIN = 4 };
 static const double place_resolutions = 3;
 

@@ -50,14 +50,20 @@ static double polygon(const fg_load_sample *s, const bool *left_out, size_t firs
   return area;
 }
 
-/* NaN: its ends do not meet. */
-static double loop_area(const fg_load_sample *s, const bool *left_out,
-                        const fg_load_direction *direction, size_t first, size_t last,
-                        double variance, loops *all) {
-  if (fabs(s[last].x_mm - s[first].x_mm) > close_share * direction->travel_mm) return NAN;
-  double area = polygon(s, left_out, first, last), noise = 0;
+/* Samples that loops are found in. */
+typedef struct loop_samples {
+  const fg_load_sample *sample;
+  const bool *left_out;
+  double travel_mm, variance; /* of the direction; of a sample's force */
+} loop_samples;
+
+/* Adds the loop of samples first ... last. Returns its area; NaN: its ends do not meet. */
+static double add_loop(const loop_samples *from, size_t first, size_t last, loops *all) {
+  const fg_load_sample *s = from->sample;
+  if (fabs(s[last].x_mm - s[first].x_mm) > close_share * from->travel_mm) return NAN;
+  double area = polygon(s, from->left_out, first, last), noise = 0;
   for (size_t i = first + 1; i < last; i++)
-    noise += variance * pow((s[i + 1].x_mm - s[i - 1].x_mm) / 2, 2);
+    noise += from->variance * pow((s[i + 1].x_mm - s[i - 1].x_mm) / 2, 2);
   add_area(&all->single, area);
   all->noise = noise;
   return area;
@@ -93,19 +99,20 @@ static bool is_loop(const fg_load_strokes *strokes, size_t i, double widest) {
 static loops find_loops(const fg_load_sample *samples, const fg_load_strokes *strokes,
                         const fg_load_direction *direction) {
   loops all = {0};
-  double variance = mean_variance(strokes), last = NAN, widest = find_widest(strokes);
+  const loop_samples from = {samples, strokes->left_out, direction->travel_mm,
+                             mean_variance(strokes)};
+  double last = NAN, widest = find_widest(strokes);
+  const fg_load_stroke *stroke = strokes->stroke;
   for (size_t i = 0; i + 1 < strokes->count; i++) {
     double area = is_loop(strokes, i, widest)
-                      ? loop_area(samples, strokes->left_out, direction, strokes->stroke[i].first,
-                                  strokes->stroke[i + 1].last, variance, &all)
+                      ? add_loop(&from, stroke[i].first, stroke[i + 1].last, &all)
                       : NAN;
     if (isfinite(area + last)) add_area(&all.pair, (area + last) / 2);
     last = area;
   }
   /* One cycle from the middle back to the middle has no turning point twice. */
   if (!(all.single.count > 0) && strokes->count && strokes->count <= CYCLE_STROKES_MAX)
-    loop_area(samples, strokes->left_out, direction, strokes->stroke[0].first,
-              strokes->stroke[strokes->count - 1].last, variance, &all);
+    add_loop(&from, stroke[0].first, stroke[strokes->count - 1].last, &all);
   return all;
 }
 
@@ -275,10 +282,22 @@ typedef struct energy {
   double lost, elastic, travel, u_elastic;
 } energy;
 
-/* Lost and elastic work of one side's foil, the rig's friction and the load cell's zero left out.
- */
-static bool press(const mean_loop *loop, const tip *end, int side, const fg_load_zero *zero,
-                  const fg_load_direction *d, double threshold, energy *sum) {
+/* The loop that the work of the foils is found from, both ends of it, and the force from which on a
+ * foil is touched. */
+typedef struct foil_work {
+  const mean_loop *loop;
+  const tip *ends;
+  const fg_load_zero *zero;
+  double threshold;
+} foil_work;
+
+/* Adds lost and elastic work of one side's foil, the rig's friction and the load cell's zero left
+ * out. False: the contact is not seen. */
+static bool add_side_work(const foil_work *from, const fg_load_direction *d, int side,
+                          energy *sum) {
+  const mean_loop *loop = from->loop;
+  const tip *end = &from->ends[side];
+  const fg_load_zero *zero = from->zero;
   int sign = side == FG_LOAD_PUSH ? 1 : -1;
   const fg_load_stroke *load = &loop->branch[sign > 0 ? UP : DOWN];
   const fg_load_stroke *unload = &loop->branch[sign > 0 ? DOWN : UP];
@@ -287,18 +306,18 @@ static bool press(const mean_loop *loop, const tip *end, int side, const fg_load
   if (!fg_local_fit_near(load, contact, 0, &fit) && !fg_local_across(load, contact, &fit))
     return false;
   if (!(fit.slope > 0)) return false;
-  double reach = fmin(before_threshold * threshold / fit.slope, sign * (contact - middle));
-  double from = contact - sign * reach, to = end->sampled_mm;
-  if (!(sign * (to - from) > 0)) return false;
+  double reach = fmin(before_threshold * from->threshold / fit.slope, sign * (contact - middle));
+  double begin = contact - sign * reach, to = end->sampled_mm;
+  if (!(sign * (to - begin) > 0)) return false;
   double base = zero->force_n + sign * zero->friction_n,
          unbase = zero->force_n - sign * zero->friction_n;
-  work in = integrate(load, base, fmin(from, to), fmax(from, to));
-  work out = integrate(unload, unbase, fmin(from, to), fmax(from, to));
+  work in = integrate(load, base, fmin(begin, to), fmax(begin, to));
+  work out = integrate(unload, unbase, fmin(begin, to), fmax(begin, to));
   double tip_work = sign * (end->force_n - base) * end->rest_mm;
   double tip_lost = fmax(0, end->apart_n - 2 * zero->friction_n) * end->rest_mm / 2;
   sum->lost += sign * (in.value - out.value) + tip_lost;
   sum->elastic += sign * (in.value + out.value) / 2 + tip_work - tip_lost / 2;
-  sum->travel += sign * (to - from) + end->rest_mm;
+  sum->travel += sign * (to - begin) + end->rest_mm;
   double noise = hypot(sqrt(in.variance + out.variance) / 2, end->u_force_n * end->rest_mm);
   sum->u_elastic += hypot(noise, (in.unsampled + out.unsampled) / 2);
   return true;
@@ -310,8 +329,9 @@ static void find_foil_loss(const mean_loop *loop, const tip end[FG_LOAD_SIDES],
                            const fg_load_zero *zero, double threshold, fg_load_direction *d) {
   energy sum = {0};
   if (!isfinite(d->clearance.value) || !isfinite(zero->force_n)) return;
+  const foil_work from = {loop, end, zero, threshold};
   for (int side = 0; side < FG_LOAD_SIDES; side++)
-    if (!press(loop, &end[side], side, zero, d, threshold, &sum)) return;
+    if (!add_side_work(&from, d, side, &sum)) return;
   if (!(sum.elastic > 0)) return;
   double value = sum.lost / (2 * M_PI * sum.elastic);
   double lost = hypot(d->area.u_repeat, 2 * zero->u_n * sum.travel) / (2 * M_PI * sum.elastic);

@@ -160,7 +160,7 @@ static variances find_variances(const fg_load_strokes *strokes, const pilot p[2]
 
 /* ---- where strokes turn ---- */
 
-/* Range about a turn for fitting a parabola over the samples' order: within so many times the
+/* Range about a turn for fitting a parabola over the samples' order: within this many times the
  * displacement's noise of its extreme. Where the noise is small, or the turn sharp, samples are too
  * few, and the extreme is as good as the noise. */
 static const double turn_reach = 8;

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/splitmix.h"
 #include "load_test/usable.h"
 
 /* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
@@ -56,10 +57,8 @@ static void find_scatter(fg_load_stroke *s) {
 
 /* A number that follows from a sample's place in the record and from nothing else. */
 static uint64_t shuffled(size_t i) {
-  uint64_t z = (uint64_t)i + 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
+  uint64_t state = (uint64_t)i;
+  return fg_splitmix_next(&state);
 }
 
 typedef struct placed {

@@ -17,7 +17,8 @@
 /* Samples before a turn that a parabola is fitted to. */
 enum { BEFORE = 12, PARAMETERS = 3 };
 
-/* Range of the search for the turn: displacement within so many times its noise of its extreme. */
+/* Range of the search for the turn: displacement within this many times its noise of its extreme.
+ */
 static const double candidate_reach = 4;
 enum { CANDIDATES_MAX = 60 };
 
@@ -25,7 +26,7 @@ enum { CANDIDATES_MAX = 60 };
  * of their standard uncertainty. */
 static const double selection_share = 1;
 
-/* Turns below the outermost one by more than so many standard uncertainties lost their tip in a
+/* Turns below the outermost one by more than this many standard uncertainties lost their tip in a
  * dropout, or are not the loop's. The smallest uncertainty of all is used: noise is the same at
  * every turn, and a dropout just before a turn makes that turn's own uncertainty large. */
 static const double turn_reach = 4;

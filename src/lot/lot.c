@@ -90,10 +90,8 @@ static fg_status prepare_run(fg_context *ctx, lot_run *run) {
                              find_own_manifest(request), &run->manifest));
   FG_TRY(fg_lot_check_inputs(ctx, request, &run->manifest));
   FG_TRY(fg_lot_check_columns(ctx, request->settings, &run->manifest));
-  run->outcome->doubles = run->manifest.doubles;
-  strcpy(run->outcome->first_double, run->manifest.first_double);
-  run->outcome->empty = run->manifest.empty;
-  strcpy(run->outcome->first_empty, run->manifest.first_empty);
+  run->outcome->notes.named_again = run->manifest.named_again;
+  run->outcome->notes.empty_folders = run->manifest.empty_folders;
   FG_TRY(fg_manifest_index_build(ctx, &run->manifest, &run->index));
   FG_TRY(fg_manifest_format(ctx, &run->manifest, &run->manifest_text));
   FG_TRY(fg_lot_settings_format(ctx, &kept, false, &run->recipe_text));
@@ -183,33 +181,34 @@ static fg_status read_earlier(fg_context *ctx, lot_run *run) {
   const fg_journal_visitor by = {
       .visit = accept_record, .user = run, .threads = run->request->settings->jobs};
   FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, &by));
-  run->outcome->torn = damage.lines;
-  run->outcome->first_torn = damage.first;
-  run->outcome->earlier = damage.earlier;
+  fg_lot_notes *notes = &run->outcome->notes;
+  notes->damaged_lines = damage.lines;
+  notes->first_damaged_line = damage.first;
+  notes->earlier_version = damage.earlier;
   return fg_parallel_run(ctx, run->request->settings->jobs, run->manifest.items, check_scan, run);
 }
 
 /* A missing scan gets a record with its error, too. */
-static void note_missing(const char *scan, fg_lot_outcome *outcome) {
+static void note_missing(const char *scan, fg_lot_finding *missing) {
   if (access(scan, F_OK) == 0) return;
-  if (outcome->missing++ == 0)
-    fg_text_clip(outcome->first_missing, sizeof outcome->first_missing, "%s", scan);
+  if (missing->count++ == 0) fg_text_clip(missing->first, sizeof missing->first, "%s", scan);
 }
 
 static fg_status list_todo(fg_context *ctx, lot_run *run) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->todo, &block));
   run->todo = block;
+  fg_lot_scans *scans = &run->outcome->scans;
   for (size_t i = 0; i < run->manifest.items; i++) {
     if (!run->items[i].mine) continue;
-    run->outcome->scans++;
+    scans->count++;
     bool kept = run->items[i].entry.length > 0, redrawn = run->items[i].redrawn;
-    run->outcome->kept += kept;
-    run->outcome->redrawn += redrawn;
+    scans->kept += kept;
+    scans->redrawn += redrawn;
     if (!kept || redrawn) run->todo[run->todo_count++] = i;
-    if (!kept) note_missing(fg_manifest_scan(&run->manifest, i), run->outcome);
+    if (!kept) note_missing(fg_manifest_scan(&run->manifest, i), &scans->missing);
   }
-  run->outcome->to_measure = run->todo_count - run->outcome->redrawn - run->outcome->missing;
+  scans->to_measure = run->todo_count - scans->redrawn - scans->missing.count;
   return FG_OK;
 }
 
@@ -219,16 +218,16 @@ static void report_progress(lot_run *run, size_t item, const char *error, bool b
   pthread_mutex_lock(&run->listening);
   fg_lot_outcome *outcome = run->outcome;
   bool kept = run->items[item].redrawn;
-  outcome->beyond += beyond && !kept;
-  outcome->measured += !error && !kept;
-  outcome->failed += error && !kept;
+  outcome->notes.beyond_model += beyond && !kept;
+  outcome->scans.measured += !error && !kept;
+  outcome->scans.failed += error && !kept;
   size_t done = ++run->done;
   double seconds = fg_clock_seconds() - run->start;
   const fg_lot_progress progress = {
       .done = done,
       .total = run->todo_count,
-      .failed = outcome->failed,
-      .kept = outcome->kept,
+      .failed = outcome->scans.failed,
+      .kept = outcome->scans.kept,
       .seconds = seconds,
       .seconds_left =
           seconds > 0.1 ? seconds * (double)(run->todo_count - done) / (double)done : NAN,
@@ -264,8 +263,8 @@ static fg_status correct_measurement(fg_context *ctx, const lot_run *run,
 
 static void note_undrawn_page(lot_run *run, const char *why) {
   pthread_mutex_lock(&run->listening);
-  if (run->outcome->not_drawn++ == 0)
-    fg_text_clip(run->outcome->first_not_drawn, sizeof run->outcome->first_not_drawn, "%s", why);
+  fg_lot_finding *pages = &run->outcome->notes.undrawn_pages;
+  if (pages->count++ == 0) fg_text_clip(pages->first, sizeof pages->first, "%s", why);
   pthread_mutex_unlock(&run->listening);
 }
 

@@ -116,7 +116,7 @@ static double find_split(const fg_disc_edge *edge) {
 static double find_uncertainty(const flat_work *w, const fg_disc_edge *found) {
   double curvature = found->circle.radius;
   double contrast = fabs(found->inside - found->outside), ratio = fabs(found->blur_px / curvature);
-  double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px);
+  double loss_px = fg_loss_edge_px(w->m->file.jpeg_quality, contrast, found->blur_px);
   double level_px =
       fg_level_uncertainty(&w->m->design, &found->picture, 0) * fg_level_shift(found->blur_px);
   double tone_px = hypot(w->tone.gamma == 1 ? 0 : TONE_U_PX, level_px);
@@ -149,7 +149,7 @@ static fg_status copy_edge(fg_context *ctx, const flat_work *w, const fg_stretch
   edge->u_mm_of_level = find_uncertainty(w, found) * mm;
   edge->u_mm_of_next = overlap_px * mm;
   edge->shape_ratio = found->shape_ratio;
-  edge->loss_share = fg_loss_turn_variance(w->m->jpeg_quality);
+  edge->loss_share = fg_loss_turn_variance(w->m->file.jpeg_quality);
   return FG_OK;
 }
 

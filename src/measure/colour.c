@@ -20,7 +20,7 @@ enum { RED, GREEN, BLUE, CHANNELS, ROWS_MIN = 30 };
 /* Returns the channel that others are compared with: the measured one; green where the mean of all
  * was measured. */
 static int choose_reference(const fg_measurement *m) {
-  return m->channel == FG_CHANNEL_LUMINANCE ? GREEN : (int)m->channel - FG_CHANNEL_RED;
+  return m->file.channel == FG_CHANNEL_LUMINANCE ? GREEN : (int)m->file.channel - FG_CHANNEL_RED;
 }
 
 static void clear_shift(int channel, fg_colour_state state, fg_colour_shift *shift) {

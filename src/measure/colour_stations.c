@@ -31,8 +31,8 @@ static fg_status add_station(fg_context *ctx, const chooser *c, fg_colour_statio
   double wide = fabs(s->nx) * s->half_across_px + fabs(s->ny) * s->half_along_px;
   s->top = (int64_t)floor(s->y - up);
   s->bottom = (int64_t)ceil(s->y + up);
-  if (s->top < 0 || s->bottom >= c->m->height_px || s->x - wide < 0 ||
-      s->x + wide > (double)(c->m->width_px - 1))
+  if (s->top < 0 || s->bottom >= c->m->file.height_px || s->x - wide < 0 ||
+      s->x + wide > (double)(c->m->file.width_px - 1))
     return FG_OK;
   FG_TRY(
       fg_memory_reserve(ctx, to->count + 1, sizeof *to->list, &to->capacity, (void **)&to->list));

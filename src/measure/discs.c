@@ -168,7 +168,7 @@ fg_status fg_measure_disc_near(fg_context *ctx, const fg_tiles *tiles, const fg_
   fg_tone tone;
   disc_work work = {.tiles = tiles,
                     .design = &m->design,
-                    .jpeg_quality = m->jpeg_quality,
+                    .jpeg_quality = m->file.jpeg_quality,
                     .shape = *shape,
                     .found = &found,
                     .tones = &tone,
@@ -240,7 +240,7 @@ fg_status fg_measure_discs(fg_context *ctx, const fg_tiles *tiles, unsigned thre
   fg_disc_candidates found = {0};
   disc_work work = {.tiles = tiles,
                     .design = &m->design,
-                    .jpeg_quality = m->jpeg_quality,
+                    .jpeg_quality = m->file.jpeg_quality,
                     .shape = fg_pixel_shape_of(m->dpi),
                     .found = &found};
   double min = min_radius_px(&m->design, &work.shape);

@@ -218,7 +218,7 @@ static fg_status hand_out_marks(fg_context *ctx, const grid_work *work, const fg
     const fg_mark_fit *fit = &work->starts.list[work->start_of[i]];
     if (!place->on) continue;
     double contrast = fit->p[FG_MARK_CONTRAST], blur = fit->p[FG_MARK_BLUR];
-    double loss = fg_loss_edge_px(m->jpeg_quality, contrast, blur);
+    double loss = fg_loss_edge_px(m->file.jpeg_quality, contrast, blur);
     grid->marks[grid->count++] = (fg_mark){.column = place->column,
                                            .row = place->row,
                                            .at_mm = place->at,

@@ -172,7 +172,7 @@ static void set_disc(const fg_level *level, const fg_measurement *m, fg_disc *di
   set_level(level, &part, &disc->picture);
   if (!disc->picture.level_known) return;
   disc->edge_u_mm =
-      um / 1000 * fg_loss_edge_px(m->jpeg_quality, disc->contrast, disc->blur_um / um);
+      um / 1000 * fg_loss_edge_px(m->file.jpeg_quality, disc->contrast, disc->blur_um / um);
   fg_disc_find_level_uncertainty(&m->design, disc);
 }
 

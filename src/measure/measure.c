@@ -62,7 +62,7 @@ static fg_status fail_without_beams(fg_context *ctx, const fg_measurement *m) {
  * resolution, or the resolution wrong. */
 static fg_status fail_empty(fg_context *ctx, const fg_measurement *m, const fg_tiles *tiles) {
   double brightest = 257.0 * tiles->brightest;
-  if (m->bit_depth == 16 && brightest < 4096)
+  if (m->file.bit_depth == 16 && brightest < 4096)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "%s: no foil in the picture (%zu speck%s or other objects); its brightest place "
@@ -150,19 +150,9 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   const fg_scan_info *info = fg_scan_get_info(*scan);
   snprintf(m->scan, sizeof m->scan, "%s", path);
   if (fg_scan_is_file(*scan)) fg_date_of_file(path, m->date);
-  snprintf(m->format, sizeof m->format, "%s", info->format);
+  m->file = *info;
   snprintf(m->warning, sizeof m->warning, "%s", info->warning);
-  m->width_px = info->width_px;
-  m->height_px = info->height_px;
-  m->bit_depth = info->bit_depth;
-  m->jpeg_quality = info->jpeg_quality;
-  m->colour = info->colour;
-  m->channel = info->channel;
-  for (int i = 0; i < 2; i++) {
-    m->averaged[i] = info->averaged[i];
-    m->dpi[i] = info->dpi[i];
-    m->dpi_file[i] = info->dpi_file[i];
-  }
+  memcpy(m->dpi, info->dpi, sizeof m->dpi);
   return FG_OK;
 }
 
@@ -185,14 +175,14 @@ static void clear_failed(const fg_measure_options *options, fg_scan *scan, fg_me
 static unsigned check_resolution(fg_measurement *m) {
   unsigned flags = 0;
   for (int axis = 0; axis < 2; axis++)
-    if (fabs(m->averaged[axis] * m->dpi[axis] / m->dpi_file[axis] - 1) > CONTRADICTION)
+    if (fabs(m->file.averaged[axis] * m->dpi[axis] / m->file.dpi_file[axis] - 1) > CONTRADICTION)
       flags |= FG_FOIL_RESOLUTION_CONTRADICTS_FILE;
   if (fabs(log(m->dpi[0] / m->dpi[1])) > UNEQUAL) flags |= FG_FOIL_UNEQUAL_RESOLUTION;
   if (m->warning[0]) return flags;
   if (flags & FG_FOIL_RESOLUTION_CONTRADICTS_FILE)
     snprintf(m->warning, sizeof m->warning,
              "measured at %.6g dpi as was given, but the file says %.6g × %.6g", m->dpi[0],
-             m->dpi_file[0], m->dpi_file[1]);
+             m->file.dpi_file[0], m->file.dpi_file[1]);
   else if (flags)
     snprintf(m->warning, sizeof m->warning, "the resolutions along x and y differ: %.6g × %.6g dpi",
              m->dpi[0], m->dpi[1]);
@@ -258,7 +248,7 @@ static void note_contradiction(fg_measurement *m) {
       snprintf(m->warning, sizeof m->warning,
                "the scan shows a thickness of %.4f mm, and %.4f mm is stated as measured: one of "
                "them is wrong, and u holds the difference",
-               m->foils[i].thickness_scan_mm, m->design.thickness_measured_mm);
+               m->foils[i].thickness.scan_mm, m->design.thickness_measured_mm);
 }
 
 /* Moves all edges to the level given by the gauges on the glass. */
@@ -282,7 +272,7 @@ static void note_loss(fg_measurement *m) {
         m->warning, sizeof m->warning,
         "compressed with loss (JPEG, quality %d): edges have moved, and uncertainties are wider "
         "for it",
-        m->jpeg_quality);
+        m->file.jpeg_quality);
 }
 
 /* Notes channels apart when nothing else is odd. */
@@ -292,7 +282,7 @@ static void note_apart(fg_measurement *m) {
   for (int k = 0; k < 2; k++)
     max = fmax(max, lines->shifts[k].largest_px); /* fmax prefers the number to NaN */
   if (m->warning[0]) return;
-  if (m->channel == FG_CHANNEL_LUMINANCE)
+  if (m->file.channel == FG_CHANNEL_LUMINANCE)
     snprintf(
         m->warning, sizeof m->warning,
         "the colour channels lie %.2f px apart, and their mean was measured: edges are blurred "
@@ -326,7 +316,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;
   note_contradiction(measurement);
-  if (measurement->jpeg_quality) note_loss(measurement);
+  if (measurement->file.jpeg_quality) note_loss(measurement);
   if (measurement->colour_lines.apart) note_apart(measurement);
   fg_picture_gather(measurement);
 exit:

@@ -44,9 +44,9 @@ static void decide_blocks(bool jpeg, fg_picture_state *state) {
 
 static void decide_all_blocks(fg_measurement *m) {
   for (size_t i = 0; i < m->foil_count; i++)
-    decide_blocks(m->jpeg_quality > 0, &m->foils[i].strip.picture);
+    decide_blocks(m->file.jpeg_quality > 0, &m->foils[i].strip.picture);
   for (size_t i = 0; i < m->disc_count; i++)
-    decide_blocks(m->jpeg_quality > 0, &m->discs[i].picture);
+    decide_blocks(m->file.jpeg_quality > 0, &m->discs[i].picture);
 }
 
 static void merge_all(fg_measurement *m) {

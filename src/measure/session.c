@@ -22,10 +22,10 @@
 
 enum { WORKERS_MAX = 63 };
 /* A strip without bumps is a foil that failed when its width is the design's within this factor,
- * and some other thing (a scratch, a hair) when it is not. */
+ * and a scratch or a hair when it is not. */
 #define WIDTH_FACTOR 1.6
 
-/* A foil that lies so many strip widths from the scan's border may be cut by it. */
+/* A foil that lies this many strip widths from the scan's border may be cut by it. */
 #define BORDER_WIDTHS 2.0
 
 /* The reader helps when islands wait with more than this: workers that fall behind would otherwise
@@ -100,7 +100,7 @@ static double min_object_px(const fg_measurement *m) {
 
 /* Of a file that says itself that it is a JPEG, or of one whose pixels do. */
 static void find_loss(const fg_measurement *m, fg_strip *strip) {
-  int quality = m->jpeg_quality ? m->jpeg_quality : strip->picture.block_quality;
+  int quality = m->file.jpeg_quality ? m->file.jpeg_quality : strip->picture.block_quality;
   double um = 25400 / sqrt(m->dpi[0] * m->dpi[1]);
   double blur_px = 0.5 * (strip->blur_left_um + strip->blur_right_um) / um;
   strip->loss_variance = fg_loss_arc_variance(quality);

@@ -108,7 +108,8 @@ static fg_status allocate_reducer(fg_context *ctx, reducer *work, fg_picture *pi
 static fg_status check_same(fg_context *ctx, const fg_measurement *measurement,
                             const fg_scan *scan) {
   const fg_scan_info *info = fg_scan_get_info(scan);
-  if (info->width_px == measurement->width_px && info->height_px == measurement->height_px)
+  if (info->width_px == measurement->file.width_px &&
+      info->height_px == measurement->file.height_px)
     return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA, "%s: it changed while it was measured; measure again",
                  measurement->scan);
@@ -131,12 +132,13 @@ static void choose_size(const int64_t box[4], int32_t width_max, double pixels_m
 fg_status fg_picture_load(fg_context *ctx, const fg_measurement *measurement,
                           const int64_t box_px[4], int32_t width_max, double pixels_max,
                           fg_picture *picture) {
-  const fg_scan_options options = {.dpi = measurement->dpi[0],
-                                   .averaged = {measurement->averaged[0], measurement->averaged[1]},
-                                   .pixel_cap = UINT64_MAX,
-                                   .channel = measurement->channel,
-                                   .allow_lossy = true,
-                                   .unsummed = true};
+  const fg_scan_options options = {
+      .dpi = measurement->dpi[0],
+      .averaged = {measurement->file.averaged[0], measurement->file.averaged[1]},
+      .pixel_cap = UINT64_MAX,
+      .channel = measurement->file.channel,
+      .allow_lossy = true,
+      .unsummed = true};
   reducer work = {.box = box_px};
   fg_status status = FG_OK;
   *picture = (fg_picture){0};

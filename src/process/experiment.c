@@ -219,24 +219,26 @@ static fg_status read_uncertainty(fg_context *ctx, const fg_experiment_options *
                                   fg_experiment *e) {
   const fg_extended *u = NULL;
   double squares = 0;
-  e->u_rms = NAN;
+  e->measurement.u_rms = NAN;
   if (!options->uncertainty) return FG_OK;
   FG_TRY(fg_table_numbers(ctx, &e->table, options->uncertainty, &u));
-  FG_TRY(fg_memory_allocate(ctx, e->table.rows, sizeof *e->u, (void **)&e->u));
+  FG_TRY(
+      fg_memory_allocate(ctx, e->table.rows, sizeof *e->measurement.u, (void **)&e->measurement.u));
   for (size_t i = 0; i < e->table.rows; i++) {
     if (u[i].value < 0)
       return fg_fail(ctx, FG_ERR_DATA, "row %zu, column '%s': an uncertainty of %.15g is negative",
                      i + 1, options->uncertainty, u[i].value);
-    e->u[i] = u[i].value;
+    e->measurement.u[i] = u[i].value;
     squares += u[i].value * u[i].value;
   }
-  e->u_rms = sqrt(squares / (double)e->table.rows);
+  e->measurement.u_rms = sqrt(squares / (double)e->table.rows);
   return FG_OK;
 }
 
 static fg_status fit_experiment(fg_context *ctx, fg_experiment *e) {
-  const fg_regression_options options = {
-      .confidence = e->confidence, .dof_taken = e->dof_taken, .taken = e->taken_out};
+  const fg_regression_options options = {.confidence = e->confidence,
+                                         .dof_subtracted = e->subtracted.dof,
+                                         .subtracted = e->subtracted.sum};
   const fg_extended *y = NULL;
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
   FG_TRY(fg_regression_fit(ctx, &e->model, y, &options, &e->regression));
@@ -264,17 +266,19 @@ static fg_status note_forgotten(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
-static fg_status copy_taken(fg_context *ctx, const fg_experiment_options *options,
-                            fg_experiment *e) {
+static fg_status copy_subtracted(fg_context *ctx, const fg_experiment_options *options,
+                                 fg_experiment *e) {
   size_t rows = e->table.rows;
-  if (!options->takens) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, options->takens, sizeof *e->taken, (void **)&e->taken));
-  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *e->taken_out, (void **)&e->taken_out));
-  memcpy(e->taken, options->taken, options->takens * sizeof *e->taken);
-  memcpy(e->taken_out, options->taken_out, rows * sizeof *e->taken_out);
-  e->takens = options->takens;
-  for (size_t i = 0; i < e->takens; i++)
-    if (e->taken[i].applied) e->dof_taken += e->taken[i].parameters;
+  if (!options->subtracted_count) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, options->subtracted_count, sizeof *e->subtracted.effects,
+                            (void **)&e->subtracted.effects));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *e->subtracted.sum, (void **)&e->subtracted.sum));
+  memcpy(e->subtracted.effects, options->subtracted,
+         options->subtracted_count * sizeof *e->subtracted.effects);
+  memcpy(e->subtracted.sum, options->subtracted_sum, rows * sizeof *e->subtracted.sum);
+  e->subtracted.count = options->subtracted_count;
+  for (size_t i = 0; i < e->subtracted.count; i++)
+    if (e->subtracted.effects[i].applied) e->subtracted.dof += e->subtracted.effects[i].parameters;
   return FG_OK;
 }
 
@@ -282,7 +286,7 @@ fg_status fg_experiment_fit(fg_context *ctx, const fg_table *runs,
                             const fg_experiment_options *options, fg_experiment *e) {
   FG_TRY(read_options(ctx, options, e));
   FG_TRY(fg_table_copy(ctx, runs, &e->table));
-  FG_TRY(copy_taken(ctx, options, e));
+  FG_TRY(copy_subtracted(ctx, options, e));
   FG_TRY(apply_sign(ctx, options, e));
   FG_TRY(code_factors(ctx, options, e));
   FG_TRY(build_model(ctx, e));

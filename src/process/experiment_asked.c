@@ -11,6 +11,9 @@
 
 /* Number of values along a factor; a parabola through the best ones refines the optimum. */
 enum { PLACES = 200 };
+/* Share of the distance between places down to which a best value is refined: the reports show no
+ * more digits. */
+#define STEP_MIN 1e-6
 
 static fg_status fail_at(fg_context *ctx, const char *text, const char *at, const char *what) {
   return fg_fail(ctx, FG_ERR_USAGE,
@@ -91,20 +94,19 @@ static fg_status read_setting(fg_context *ctx, const fg_experiment *e, const cha
   return FG_OK;
 }
 
-static double cost_of(const fg_experiment *e, double value) {
-  if (e->goal == FG_GOAL_TARGET) return fabs(value - e->target);
-  return e->goal == FG_GOAL_HIGHEST ? -value : value;
-}
-
-static fg_status cost_at(fg_context *ctx, const fg_experiment *e, const fg_asked *asked, size_t v,
-                         double x, double *mean, double *cost) {
+/* Tries a value of one factor, and keeps it where its cost is below the lowest so far. */
+static fg_status try_value(fg_context *ctx, const fg_experiment *e, size_t variable, double value,
+                           double *lowest_cost, fg_asked *asked) {
   double setting[FG_FORMULA_VARIABLES];
   fg_prediction p;
   memcpy(setting, asked->setting, sizeof setting);
-  setting[v] = x;
+  setting[variable] = value;
   FG_TRY(fg_experiment_predict(ctx, e, setting, &p));
-  *mean = p.mean;
-  *cost = cost_of(e, p.mean);
+  double cost = fg_experiment_cost(e, p.mean);
+  if (!(cost < *lowest_cost)) return FG_OK;
+  *lowest_cost = cost;
+  asked->best_at[variable] = value;
+  asked->best_mean[variable] = p.mean;
   return FG_OK;
 }
 
@@ -112,23 +114,13 @@ static fg_status cost_at(fg_context *ctx, const fg_experiment *e, const fg_asked
 static fg_status best_along(fg_context *ctx, const fg_experiment *e, const fg_factor *factor,
                             fg_asked *asked) {
   size_t v = factor->variable;
-  double low = factor->lowest, step = (factor->highest - low) / PLACES, best = INFINITY;
-  for (int i = 0; i <= PLACES; i++) {
-    double x = low + step * i, mean, cost;
-    FG_TRY(cost_at(ctx, e, asked, v, x, &mean, &cost));
-    if (!(cost < best)) continue;
-    best = cost;
-    asked->best_at[v] = x;
-    asked->best_mean[v] = mean;
-  }
-  for (double half = step; half > 1e-6 * step; half /= 2) /* down to where digits end */
+  double low = factor->lowest, step = (factor->highest - low) / PLACES, cost = INFINITY;
+  for (int i = 0; i <= PLACES; i++)
+    FG_TRY(try_value(ctx, e, v, low + step * i, &cost, asked));
+  for (double half = step; half > STEP_MIN * step; half /= 2)
     for (int side = -1; side <= 1; side += 2) {
-      double x = fmin(fmax(asked->best_at[v] + side * half, low), factor->highest), mean, cost;
-      FG_TRY(cost_at(ctx, e, asked, v, x, &mean, &cost));
-      if (!(cost < best)) continue;
-      best = cost;
-      asked->best_at[v] = x;
-      asked->best_mean[v] = mean;
+      double x = fmin(fmax(asked->best_at[v] + side * half, low), factor->highest);
+      FG_TRY(try_value(ctx, e, v, x, &cost, asked));
     }
   return FG_OK;
 }
@@ -151,9 +143,9 @@ static fg_status predict_request(fg_context *ctx, const fg_experiment *e, const 
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
                             fg_experiment *e) {
   if (!options->ats) return FG_OK;
-  FG_TRY(fg_experiment_check_taken(ctx, e));
-  e->goal = options->goal;
-  e->target = options->target;
+  FG_TRY(fg_experiment_check_subtracted(ctx, e));
+  e->best.goal = options->goal;
+  e->best.target = options->target;
   FG_TRY(fg_memory_allocate(ctx, options->ats, sizeof *e->asked, (void **)&e->asked));
   for (size_t i = 0; i < options->ats; i++) {
     FG_TRY(predict_request(ctx, e, options->at[i], &e->asked[i]));

@@ -43,7 +43,7 @@ static double error_of(const fg_experiment *e, bool whole_plot, double *dof) {
 
 /* True for an analysis of variance by strata that tells the scatter. */
 static bool has_strata(const fg_experiment *e) {
-  return e->has_split_plot && e->split_plot.of_plots && !e->weight;
+  return e->has_split_plot && e->split_plot.of_plots && !e->measurement.weight;
 }
 
 static bool is_block_term(const fg_experiment *e, size_t term) {
@@ -52,12 +52,12 @@ static bool is_block_term(const fg_experiment *e, size_t term) {
 }
 
 /* Returns variance and dof by restricted likelihood. Effects subtracted from the response before
- * lower the dof by `taken`. */
-static double mixed_variance(const fg_experiment *e, const double *row, bool run, size_t taken,
-                             double *dof) {
+ * lower the dof. */
+static double mixed_variance(const fg_experiment *e, const double *row, bool run,
+                             size_t dof_subtracted, double *dof) {
   double variance = fg_mixed_variance(e->split_plot.mixed, row, run, dof);
-  double left = *dof - (double)taken;
-  if (!taken) return variance;
+  double left = *dof - (double)dof_subtracted;
+  if (!dof_subtracted) return variance;
   variance *= left > 0 ? *dof / left : NAN;
   *dof = left;
   return variance;
@@ -69,7 +69,8 @@ static void judge_mixed(const fg_experiment *e, size_t j, double *row,
   const fg_split_plot *s = &e->split_plot;
   row[j] = 1;
   effect->standard_error = sqrt(mixed_variance(
-      e, row, false, effect->whole_plot ? s->taken_plots : s->taken_runs, &effect->dof));
+      e, row, false, effect->whole_plot ? s->subtracted_from_plots : s->subtracted_from_runs,
+      &effect->dof));
   row[j] = 0;
   if (s->mixed->fixed_groups && effect->whole_plot) effect->standard_error = effect->dof = NAN;
 }
@@ -122,10 +123,10 @@ static void fill_effect(const fg_experiment *e, size_t j, double *row,
   effect->relative_pct = c->term == FG_MODEL_CONSTANT ? NAN : fg_doe_relative_effect_pct(reg, j);
   if (c->aliased) return;
   effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
-  if (!e->has_split_plot && !e->weight) return;
+  if (!e->has_split_plot && !e->measurement.weight) return;
   effect->standard_error = sd * sqrt(variance);
   if (has_strata(e)) judge_by_strata(e, j, row, effect);
-  if (e->weight) {
+  if (e->measurement.weight) {
     row[j] = 1;
     effect->dof = fg_experiment_weighted_dof(e, row);
     row[j] = 0;
@@ -149,8 +150,8 @@ static void propagate(const fg_experiment *e, size_t j, double *row, fg_experime
     double gain = 0;
     for (size_t k = 0; k < reg->columns; k++)
       gain += row[k] * e->model.matrix[k * reg->rows + i].value;
-    if (e->weight) gain *= e->weight[i];
-    sum += gain * gain * e->u[i] * e->u[i];
+    if (e->measurement.weight) gain *= e->measurement.weight[i];
+    sum += gain * gain * e->measurement.u[i] * e->measurement.u[i];
   }
   effect->u_measurement = sqrt(sum);
 }
@@ -163,7 +164,8 @@ static fg_status fill_effects(fg_context *ctx, fg_experiment *e) {
   for (size_t j = 0; j < columns; j++) {
     memset(row, 0, columns * sizeof *row);
     fill_effect(e, j, row, &e->effect[j]);
-    if (e->u && !e->regression.coefficient[j].aliased) propagate(e, j, row, &e->effect[j]);
+    if (e->measurement.u && !e->regression.coefficient[j].aliased)
+      propagate(e, j, row, &e->effect[j]);
   }
   free(row);
   return FG_OK;
@@ -171,18 +173,18 @@ static fg_status fill_effects(fg_context *ctx, fg_experiment *e) {
 
 static fg_status note_measurement(fg_context *ctx, fg_experiment *e) {
   const fg_regression *reg = &e->regression;
-  if (!e->u) return FG_OK;
+  if (!e->measurement.u) return FG_OK;
   if (!reg->residual_dof)
     return fg_experiment_note(ctx, e,
                               "u_measurement is the part of a coefficient's standard error that "
                               "the measurement makes: the whole error is larger, by how much only "
                               "repeated runs can tell");
-  if (!e->weight && e->u_rms > reg->residual_sd)
+  if (!e->measurement.weight && e->measurement.u_rms > reg->residual_sd)
     return fg_experiment_note(ctx, e,
                               "the runs scatter less (%.3g) than the measurement's uncertainty "
                               "says (%.3g): by luck, or because the scans share an error; then the "
                               "constant is less certain than its interval says",
-                              reg->residual_sd, e->u_rms);
+                              reg->residual_sd, e->measurement.u_rms);
   return FG_OK;
 }
 
@@ -216,9 +218,9 @@ static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
   fg_formula_free(&formula);
   FG_TRY(status);
   e->has_split_plot = true;
-  if (e->dof_taken)
-    FG_TRY(fg_split_plot_subtract_dof(ctx, &e->table, e->whole_plot, e->dof_taken, e->taken_out,
-                                      &e->split_plot));
+  if (e->subtracted.dof)
+    FG_TRY(fg_split_plot_subtract_dof(ctx, &e->table, e->whole_plot, e->subtracted.dof,
+                                      e->subtracted.sum, &e->split_plot));
   if (!e->split_plot.plot_dof)
     FG_TRY(fg_experiment_note(ctx, e,
                               "%zu whole plots leave no freedom for their error: what is constant "
@@ -262,7 +264,8 @@ static fg_status make_box_cox(fg_context *ctx, fg_experiment *e) {
   const fg_extended *y = NULL;
   fg_context quiet = {0};
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
-  if (!e->regression.residual_dof || e->table.rows > BOX_COX_RUNS || e->weight) return FG_OK;
+  if (!e->regression.residual_dof || e->table.rows > BOX_COX_RUNS || e->measurement.weight)
+    return FG_OK;
   if (!(e->regression.residual_ss > 1e-24 * e->regression.total_ss)) return FG_OK;
   for (size_t i = 0; i < e->table.rows; i++)
     if (!(y[i].value > 0)) return FG_OK;
@@ -284,7 +287,7 @@ static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   size_t count = 0;
   for (size_t k = 0; k < e->factors; k++)
     if (e->factor[k].coded) names[count++] = e->factor[k].name;
-  if (!count || count < e->factors || e->weight || e->has_split_plot) return FG_OK;
+  if (!count || count < e->factors || e->measurement.weight || e->has_split_plot) return FG_OK;
   fg_status status =
       fg_curvature_compute(&quiet, &e->table, names, count, e->response, &e->curvature);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", quiet.message);
@@ -340,8 +343,8 @@ static void predict_mixed(const fg_experiment *e, const double *row, fg_predicti
   *p = (fg_prediction){0};
   for (size_t j = 0; j < e->regression.columns; j++)
     p->mean += row[j] * e->split_plot.mixed->estimate[j];
-  p->standard_error = sqrt(mixed_variance(e, row, false, e->dof_taken, &dof));
-  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->dof_taken, &run_dof));
+  p->standard_error = sqrt(mixed_variance(e, row, false, e->subtracted.dof, &dof));
+  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->subtracted.dof, &run_dof));
   if (e->split_plot.mixed->fixed_groups) p->standard_error = p->run_standard_error = NAN;
   fill_intervals(e, dof, run_dof, p);
 }
@@ -427,7 +430,7 @@ static void predict_row(const fg_experiment *e, const double *row, double *direc
     if (!reg->coefficient[k].aliased) p->mean += row[k] * reg->coefficient[k].estimate;
   }
   double run_dof = min_dof;
-  if (e->weight) run_dof = min_dof = fg_experiment_weighted_dof(e, row);
+  if (e->measurement.weight) run_dof = min_dof = fg_experiment_weighted_dof(e, row);
   if (has_strata(e)) run_dof = run_dof_by_strata(e, row, direction);
   double run_variance = reg->residual_sd * reg->residual_sd;
   if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;

@@ -18,8 +18,8 @@
  * draws to 0.01. */
 enum { DRAWS_MAX = 1999, DRAWS_MIN = 199 };
 
-/* Draws end after so many on either side: p is then known to a tenth of itself (Besag and Clifford
- * 1991), and far from the level. */
+/* Draws end after this many on either side: p is then known to a tenth of itself (Besag and
+ * Clifford 1991), and far from the level. */
 enum { ENOUGH = 100 };
 
 /* Multiplications: a quarter of a second each. */
@@ -81,7 +81,7 @@ static void choose_order(checking *c, fg_order_check *order, double *value) {
 }
 
 static double root_weight(const fg_experiment *e, size_t row) {
-  return e->weight ? sqrt(e->weight[row]) : 1;
+  return e->measurement.weight ? sqrt(e->measurement.weight[row]) : 1;
 }
 
 /* X U, with (X'WX)^-1 = U U': its columns times the root of the weights are orthonormal. */

@@ -29,6 +29,9 @@ fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *op
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
                                  const fg_experiment *whole, fg_experiment *experiment);
 
+/* Returns a response's cost by the goal: the best setting has the lowest. */
+double fg_experiment_cost(const fg_experiment *experiment, double response);
+
 /* Predicts the response at the requested settings. */
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
                             fg_experiment *experiment);
@@ -76,8 +79,9 @@ void fg_experiment_widen(const fg_experiment *experiment, const double *x,
  * place is on the border. */
 fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *experiment,
                                    const double *x, fg_prediction *prediction);
-/* FG_ERR_USAGE: an effect of the factors was subtracted, without which no response is predicted. */
-fg_status fg_experiment_check_taken(fg_context *ctx, const fg_experiment *e);
+/* FG_ERR_USAGE: a subtracted effect is of the model's own factors, so the response at a setting
+ * cannot be predicted. */
+fg_status fg_experiment_check_subtracted(fg_context *ctx, const fg_experiment *e);
 bool fg_experiment_on_border(const fg_region *region, const double *x);
 
 /* Finds the best feasible setting, where steps are given. */

@@ -130,7 +130,7 @@ static fg_status next_to_leave(fg_context *ctx, const fg_experiment *e, const su
 }
 
 static fg_status add_idle(fg_context *ctx, fg_experiment *e, size_t variable) {
-  fg_idle_factor *idle = &e->idle[e->idles++];
+  fg_idle_factor *idle = &e->idle.factor[e->idle.count++];
   bool alone[FG_FORMULA_VARIABLES] = {false};
   alone[variable] = true;
   *idle = (fg_idle_factor){.variable = variable};
@@ -216,7 +216,7 @@ static fg_status find_idle(fg_context *ctx, fg_experiment *e, suspects *s) {
   FG_TRY(take_back_followers(ctx, e, s));
   for (size_t v = 0; v < e->model.formula.variables; v++)
     if (s->left[v]) FG_TRY(add_idle(ctx, e, v));
-  e->all_idle = e->idles && e->idles == asked;
+  e->idle.all = e->idle.count && e->idle.count == asked;
   return FG_OK;
 }
 
@@ -279,7 +279,7 @@ fg_status fg_experiment_reduce(fg_context *ctx, const fg_table *runs,
   char *formula = NULL;
   if (!e->has_surface) return FG_OK;
   FG_TRY(find_idle(ctx, e, &s));
-  if (!e->idles || e->all_idle) return FG_OK;
+  if (!e->idle.count || e->idle.all) return FG_OK;
   fg_status status = write_formula(ctx, e, &s, &formula);
   if (status == FG_OK)
     status = fg_memory_allocate(ctx, 1, sizeof *e->reduced, (void **)&e->reduced);

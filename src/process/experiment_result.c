@@ -41,11 +41,11 @@ void fg_experiment_free(fg_experiment *e) {
   fg_table_free(&e->table);
   free(e->effect);
   free(e->setting);
-  free(e->u);
-  free(e->weight);
-  free(e->weight_gram);
-  free(e->taken);
-  free(e->taken_out);
+  free(e->measurement.u);
+  free(e->measurement.weight);
+  free(e->measurement.weight_gram);
+  free(e->subtracted.effects);
+  free(e->subtracted.sum);
   free(e->order_value);
   free(e->response);
   free(e->formula);
@@ -60,10 +60,10 @@ static bool is_factor(const fg_experiment *e, const char *column) {
   return false;
 }
 
-bool fg_experiment_is_of_factors(const fg_experiment *e, const fg_experiment_taken *taken) {
-  if (!taken->applied || !(taken->high > taken->low) || !*taken->column[0]) return false;
+bool fg_experiment_is_of_factors(const fg_experiment *e, const fg_subtracted_effect *effect) {
+  if (!effect->applied || !(effect->high > effect->low) || !*effect->column[0]) return false;
   for (int k = 0; k < 2; k++)
-    if (*taken->column[k] && !is_factor(e, taken->column[k])) return false;
+    if (*effect->column[k] && !is_factor(e, effect->column[k])) return false;
   return true;
 }
 
@@ -75,6 +75,11 @@ double fg_experiment_p_value(const fg_experiment *e, size_t column) {
 bool fg_experiment_of_interest(const fg_experiment *e, size_t column) {
   const fg_coefficient *c = &e->regression.coefficient[column];
   return c->term != FG_MODEL_CONSTANT && !c->aliased && !e->effect[column].block;
+}
+
+double fg_experiment_cost(const fg_experiment *e, double response) {
+  if (e->best.goal == FG_GOAL_TARGET) return fabs(response - e->best.target);
+  return e->best.goal == FG_GOAL_HIGHEST ? -response : response;
 }
 
 bool fg_experiment_lacks_fit(const fg_experiment *e) {
@@ -107,5 +112,5 @@ const fg_factor *fg_experiment_main_factor(const fg_experiment *e, size_t column
 
 const fg_optimum *fg_experiment_best_point(const fg_experiment *e) {
   const fg_experiment *best = fg_experiment_best(e);
-  return best->has_rounded ? &best->rounded : &best->optimum;
+  return best->best.has_rounded ? &best->best.rounded : &best->best.optimum;
 }

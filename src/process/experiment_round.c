@@ -23,8 +23,8 @@ static fg_status find_steps(fg_context *ctx, const fg_experiment_options *option
     bool found = false;
     for (size_t k = 0; k < e->surface.factors; k++) {
       if (strcmp(rounded_factor(e, k)->name, options->round[r].name) != 0) continue;
-      e->step[k] = options->round[r].step;
-      found = e->has_rounded = true;
+      e->best.step[k] = options->round[r].step;
+      found = e->best.has_rounded = true;
     }
     if (!found)
       return fg_fail(ctx, FG_ERR_USAGE, "--round %s: this is no numeric factor of the model",
@@ -43,22 +43,17 @@ static double multiple(const fg_factor *factor, double step, double x, size_t i)
 
 /* Combination `number` of the multiples of all factors that have a step. */
 static void combine(const fg_experiment *e, size_t number, double *x) {
-  memcpy(x, e->optimum.x, sizeof e->optimum.x);
+  memcpy(x, e->best.optimum.x, sizeof e->best.optimum.x);
   for (size_t k = 0; k < e->surface.factors; k++) {
-    if (!(e->step[k] > 0)) continue;
-    x[k] = multiple(rounded_factor(e, k), e->step[k], x[k], number % SIDES);
+    if (!(e->best.step[k] > 0)) continue;
+    x[k] = multiple(rounded_factor(e, k), e->best.step[k], x[k], number % SIDES);
     number /= SIDES;
   }
 }
 
-static double cost_of(const fg_experiment *e, double value) {
-  if (e->goal == FG_GOAL_TARGET) return fabs(value - e->target);
-  return e->goal == FG_GOAL_HIGHEST ? -value : value;
-}
-
 static bool has_free(const fg_experiment *e) {
   for (size_t k = 0; k < e->surface.factors; k++)
-    if (!(e->step[k] > 0)) return true;
+    if (!(e->best.step[k] > 0)) return true;
   return false;
 }
 
@@ -68,8 +63,9 @@ static bool move_free(const fg_experiment *e, double *x) {
   fg_context quiet = {0};
   fg_region held = e->region;
   for (size_t k = 0; k < e->surface.factors; k++)
-    if (e->step[k] > 0) held.low[k] = held.high[k] = x[k];
-  return fg_surface_optimum_region(&quiet, &e->surface, e->goal, e->target, &held, x) == FG_OK;
+    if (e->best.step[k] > 0) held.low[k] = held.high[k] = x[k];
+  return fg_surface_optimum_region(&quiet, &e->surface, e->best.goal, e->best.target, &held, x) ==
+         FG_OK;
 }
 
 static bool find_best(const fg_experiment *e, size_t tried, double *best) {
@@ -78,7 +74,7 @@ static bool find_best(const fg_experiment *e, size_t tried, double *best) {
   for (size_t i = 0; i < tried; i++) {
     combine(e, i, x);
     if (move && !move_free(e, x)) continue;
-    double cost = cost_of(e, fg_surface_value(&e->surface, x));
+    double cost = fg_experiment_cost(e, fg_surface_value(&e->surface, x));
     if (!(cost < min) || !fg_region_contains(&e->region, x, 1e-9)) continue;
     min = cost;
     memcpy(best, x, sizeof x);
@@ -90,16 +86,16 @@ fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *opti
                               fg_experiment *e) {
   size_t tried = 1;
   FG_TRY(find_steps(ctx, options, e));
-  if (!e->has_rounded) return FG_OK;
+  if (!e->best.has_rounded) return FG_OK;
   for (size_t k = 0; k < e->surface.factors; k++)
-    if (e->step[k] > 0) tried = tried > TRIED_MAX / SIDES ? TRIED_MAX : tried * SIDES;
-  e->has_rounded = find_best(e, tried, e->rounded.x);
-  if (!e->has_rounded && e->reduced) return FG_OK;
-  if (!e->has_rounded)
+    if (e->best.step[k] > 0) tried = tried > TRIED_MAX / SIDES ? TRIED_MAX : tried * SIDES;
+  e->best.has_rounded = find_best(e, tried, e->best.rounded.x);
+  if (!e->best.has_rounded && e->reduced) return FG_OK;
+  if (!e->best.has_rounded)
     return fg_experiment_note(ctx, e,
                               "no setting that can be made (--round) lies in the region near the "
                               "best one: take finer steps");
-  FG_TRY(fg_experiment_predict_at(ctx, e, e->rounded.x, &e->rounded.prediction));
-  e->rounded.on_border = fg_experiment_on_border(&e->region, e->rounded.x);
+  FG_TRY(fg_experiment_predict_at(ctx, e, e->best.rounded.x, &e->best.rounded.prediction));
+  e->best.rounded.on_border = fg_experiment_on_border(&e->region, e->best.rounded.x);
   return FG_OK;
 }

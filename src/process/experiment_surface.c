@@ -70,7 +70,7 @@ static fg_status make_region(fg_context *ctx, const fg_experiment_options *optio
 fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *e, const double *x,
                                    fg_prediction *prediction) {
   double setting[FG_FORMULA_VARIABLES];
-  memcpy(setting, e->best_setting, sizeof setting);
+  memcpy(setting, e->best.levels, sizeof setting);
   for (size_t k = 0; k < e->surface.factors; k++)
     setting[e->surface.variable[k]] = x[k];
   FG_TRY(fg_experiment_predict(ctx, e, setting, prediction));
@@ -78,7 +78,8 @@ fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *e, cons
   return FG_OK;
 }
 
-/* On its sphere or box side or half-space: a little outwards it would be out. */
+/* Returns true on its sphere, a side of its box or a half-space: a step outwards leaves the region.
+ */
 bool fg_experiment_on_border(const fg_region *region, const double *x) {
   double size = 0, scale[FG_SURFACE_FACTORS], at[FG_SURFACE_FACTORS];
   fg_region r;
@@ -107,11 +108,6 @@ bool fg_experiment_next_levels(const fg_experiment *e, double *setting) {
   return false;
 }
 
-static double cost_of(const fg_experiment *e, double value) {
-  if (e->goal == FG_GOAL_TARGET) return fabs(value - e->target);
-  return e->goal == FG_GOAL_HIGHEST ? -value : value;
-}
-
 /* Without numeric factors the surface is level. */
 static fg_status make_surface(fg_context *ctx, const fg_experiment *e, const double *levels,
                               fg_surface *surface) {
@@ -129,25 +125,26 @@ static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
     double kept[FG_FORMULA_VARIABLES];
     FG_TRY(make_surface(ctx, e, levels, &surface));
     fg_prediction centre;
-    memcpy(kept, e->best_setting, sizeof kept);
-    memcpy(e->best_setting, levels, sizeof levels);
+    memcpy(kept, e->best.levels, sizeof kept);
+    memcpy(e->best.levels, levels, sizeof levels);
     FG_TRY(fg_experiment_predict_at(ctx, e, e->region.centre, &centre));
     surface.constant += centre.mean - fg_surface_value(&surface, e->region.centre);
-    FG_TRY(fg_surface_optimum_region(ctx, &surface, e->goal, e->target, &e->region, optimum.x));
+    FG_TRY(fg_surface_optimum_region(ctx, &surface, e->best.goal, e->best.target, &e->region,
+                                     optimum.x));
     FG_TRY(fg_experiment_predict_at(ctx, e, optimum.x, &optimum.prediction));
-    if (cost_of(e, optimum.prediction.mean) < best) {
-      best = cost_of(e, optimum.prediction.mean);
+    if (fg_experiment_cost(e, optimum.prediction.mean) < best) {
+      best = fg_experiment_cost(e, optimum.prediction.mean);
       e->surface = surface;
-      e->optimum = optimum;
+      e->best.optimum = optimum;
     } else {
-      memcpy(e->best_setting, kept, sizeof kept);
+      memcpy(e->best.levels, kept, sizeof kept);
     }
   } while (++tried < COMBINATIONS && fg_experiment_next_levels(e, levels));
   fg_region runs = e->region;
   runs.planes = 0;
-  e->optimum.on_border = fg_experiment_on_border(&e->region, e->optimum.x);
-  e->optimum.on_edge_of_runs = fg_experiment_on_border(&runs, e->optimum.x);
-  e->has_optimum = true;
+  e->best.optimum.on_border = fg_experiment_on_border(&e->region, e->best.optimum.x);
+  e->best.optimum.on_edge_of_runs = fg_experiment_on_border(&runs, e->best.optimum.x);
+  e->best.found = true;
   return FG_OK;
 }
 
@@ -156,9 +153,9 @@ static fg_status make_ridge(fg_context *ctx, fg_experiment *e) {
   double radii[FG_RIDGE_POINTS], path[FG_RIDGE_POINTS * FG_SURFACE_FACTORS];
   double farthest = isfinite(e->region.radius) ? e->region.radius : 0, size = 0;
   size_t n = e->surface.factors;
-  bool highest =
-      e->goal == FG_GOAL_HIGHEST ||
-      (e->goal == FG_GOAL_TARGET && e->target > fg_surface_value(&e->surface, e->region.centre));
+  bool highest = e->best.goal == FG_GOAL_HIGHEST ||
+                 (e->best.goal == FG_GOAL_TARGET &&
+                  e->best.target > fg_surface_value(&e->surface, e->region.centre));
   for (size_t k = 0; k < n; k++)
     size = fmax(size, e->region.high[k] - e->region.low[k]);
   if (!(farthest > 0)) return FG_OK;
@@ -166,7 +163,7 @@ static fg_status make_ridge(fg_context *ctx, fg_experiment *e) {
     radii[i] = farthest * (double)i / (FG_RIDGE_POINTS - 1);
   FG_TRY(fg_surface_ridge_path(ctx, &e->surface, highest, radii, FG_RIDGE_POINTS, path));
   for (size_t i = 0; i < FG_RIDGE_POINTS; i++) {
-    fg_ridge_point *point = &e->ridge[i];
+    fg_ridge_point *point = &e->best.ridge[i];
     point->radius = radii[i];
     memcpy(point->x, path + i * n, n * sizeof *path);
     point->inside = fg_region_contains(&e->region, point->x, BORDER * size);
@@ -183,22 +180,22 @@ static fg_status judge_stationary(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
-fg_status fg_experiment_check_taken(fg_context *ctx, const fg_experiment *e) {
-  for (size_t i = 0; i < e->takens; i++)
-    if (fg_experiment_is_of_factors(e, &e->taken[i]))
+fg_status fg_experiment_check_subtracted(fg_context *ctx, const fg_experiment *e) {
+  for (size_t i = 0; i < e->subtracted.count; i++)
+    if (fg_experiment_is_of_factors(e, &e->subtracted.effects[i]))
       return fg_fail(ctx, FG_ERR_USAGE,
                      "%s was taken out, and the response at a setting has it: declare it in the "
                      "formula instead, as the loop's next step says",
-                     e->taken[i].words);
+                     e->subtracted.effects[i].words);
   return FG_OK;
 }
 
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
                                 const fg_experiment *whole, fg_experiment *e) {
   fg_context words = {0};
-  e->goal = options->goal;
-  e->target = options->target;
-  fg_status status = fg_experiment_check_taken(&words, e);
+  e->best.goal = options->goal;
+  e->best.target = options->target;
+  fg_status status = fg_experiment_check_subtracted(&words, e);
   if (status == FG_OK)
     status = whole ? make_surface(&words, e, NULL, &e->surface)
                    : fg_surface_make(&words, &e->model, &e->regression, NULL, &e->surface);

@@ -17,7 +17,7 @@ static fg_status sort_u(fg_context *ctx, const fg_experiment *e, double *smalles
   double *copy = NULL;
   size_t rows = e->model.rows;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *copy, (void **)&copy));
-  memcpy(copy, e->u, rows * sizeof *copy);
+  memcpy(copy, e->measurement.u, rows * sizeof *copy);
   fg_sort(copy, rows);
   *smallest = copy[0];
   *quartile = copy[rows / 4];
@@ -30,12 +30,13 @@ static fg_status sort_u(fg_context *ctx, const fg_experiment *e, double *smalles
 static fg_status fit_with(fg_context *ctx, fg_experiment *e, const fg_extended *response,
                           double process_sd, double median, fg_regression *fit) {
   const fg_regression_options options = {.confidence = e->confidence,
-                                         .weights = e->weight,
-                                         .dof_taken = e->dof_taken,
-                                         .taken = e->taken_out};
+                                         .weights = e->measurement.weight,
+                                         .dof_subtracted = e->subtracted.dof,
+                                         .subtracted = e->subtracted.sum};
   double typical = process_sd * process_sd + median * median;
   for (size_t i = 0; i < e->model.rows; i++)
-    e->weight[i] = typical / (process_sd * process_sd + e->u[i] * e->u[i]);
+    e->measurement.weight[i] =
+        typical / (process_sd * process_sd + e->measurement.u[i] * e->measurement.u[i]);
   return fg_regression_fit(ctx, &e->model, response, &options, fit);
 }
 
@@ -48,8 +49,8 @@ static fg_status excess(fg_context *ctx, fg_experiment *e, const fg_extended *re
   double square = 0, trace = 0;
   FG_TRY(fit_with(ctx, e, response, process_sd, median, &fit));
   for (size_t i = 0; i < fit.rows; i++) {
-    square += pow(e->weight[i] * fit.residual[i], 2);
-    trace += e->weight[i] * (1 - fit.leverage[i]);
+    square += pow(e->measurement.weight[i] * fit.residual[i], 2);
+    trace += e->measurement.weight[i] * (1 - fit.leverage[i]);
   }
   *ratio = square / (trace * (process_sd * process_sd + median * median));
   fg_regression_free(&fit);
@@ -68,7 +69,7 @@ static fg_status find_process_sd(fg_context *ctx, fg_experiment *e, const fg_ext
     else
       high = middle;
   }
-  e->process_sd = high;
+  e->measurement.process_sd = high;
   return FG_OK;
 }
 
@@ -78,7 +79,7 @@ static void weighted_row(const fg_experiment *e, size_t i, double *row) {
   memset(row, 0, reg->columns * sizeof *row);
   for (size_t j = 0; j < reg->columns; j++)
     for (size_t k = 0; k < reg->columns && !reg->coefficient[j].aliased; k++)
-      row[k] += e->weight[i] * e->model.matrix[j * reg->rows + i].value *
+      row[k] += e->measurement.weight[i] * e->model.matrix[j * reg->rows + i].value *
                 reg->inverse_root[j * reg->columns + k].value;
 }
 
@@ -89,18 +90,20 @@ static void weighted_row(const fg_experiment *e, size_t i, double *row) {
 static fg_status find_weighted_dof(fg_context *ctx, fg_experiment *e) {
   size_t n = e->regression.columns;
   double *row = NULL;
-  FG_TRY(fg_memory_allocate(ctx, n * n, sizeof *e->weight_gram, (void **)&e->weight_gram));
+  FG_TRY(fg_memory_allocate(ctx, n * n, sizeof *e->measurement.weight_gram,
+                            (void **)&e->measurement.weight_gram));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *row, (void **)&row));
-  e->weight_trace = 0;
+  e->measurement.weight_trace = 0;
   for (size_t i = 0; i < e->regression.rows; i++) {
     weighted_row(e, i, row);
-    double square = e->weight[i] * e->weight[i];
-    e->weight_trace += square - 2 * e->weight[i] * fg_dot(row, row, n);
+    double square = e->measurement.weight[i] * e->measurement.weight[i];
+    e->measurement.weight_trace += square - 2 * e->measurement.weight[i] * fg_dot(row, row, n);
     for (size_t j = 0; j < n; j++)
       for (size_t k = 0; k < n; k++)
-        e->weight_gram[j * n + k] += row[j] * row[k];
+        e->measurement.weight_gram[j * n + k] += row[j] * row[k];
   }
-  e->weight_trace += fg_dot(e->weight_gram, e->weight_gram, n * n);
+  e->measurement.weight_trace +=
+      fg_dot(e->measurement.weight_gram, e->measurement.weight_gram, n * n);
   free(row);
   return FG_OK;
 }
@@ -113,20 +116,20 @@ double fg_experiment_weighted_dof(const fg_experiment *e, const double *row) {
     for (size_t k = 0; k < n && row[j] != 0 && !reg->coefficient[j].aliased; k++)
       c[k] += reg->inverse_root[j * n + k].value * row[j];
   for (size_t j = 0; j < n; j++)
-    slope += c[j] * fg_dot(e->weight_gram + j * n, c, n);
+    slope += c[j] * fg_dot(e->measurement.weight_gram + j * n, c, n);
   double variance = fg_dot(c, c, n);
   if (!(slope > 0)) return dof;
-  return fmax(fmin(variance * variance * e->weight_trace / (slope * slope), dof), 1);
+  return fmax(fmin(variance * variance * e->measurement.weight_trace / (slope * slope), dof), 1);
 }
 
 fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *e, const fg_extended *response) {
   double smallest = 0, quartile = 0, median = 0, largest = 0;
   size_t rows = e->model.rows;
   fg_regression weighted = {0};
-  e->process_sd = NAN;
-  if (!e->u || !e->regression.residual_dof || rows > RUNS_MAX) return FG_OK;
+  e->measurement.process_sd = NAN;
+  if (!e->measurement.u || !e->regression.residual_dof || rows > RUNS_MAX) return FG_OK;
   for (size_t i = 0; i < rows; i++)
-    largest = fmax(largest, e->u[i]);
+    largest = fmax(largest, e->measurement.u[i]);
   FG_TRY(sort_u(ctx, e, &smallest, &quartile, &median));
   if (!(median > 0) || largest < 2 * quartile || largest < 0.3 * e->regression.residual_sd)
     return FG_OK;
@@ -136,9 +139,10 @@ fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *e, const fg_extend
                               "to %.3g), which the analysis of whole plots does not "
                               "weigh: measure the worst again, or leave them out",
                               smallest, largest);
-  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *e->weight, (void **)&e->weight));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *e->measurement.weight,
+                            (void **)&e->measurement.weight));
   FG_TRY(find_process_sd(ctx, e, response, median));
-  FG_TRY(fit_with(ctx, e, response, e->process_sd, median, &weighted));
+  FG_TRY(fit_with(ctx, e, response, e->measurement.process_sd, median, &weighted));
   fg_regression_free(&e->regression);
   e->regression = weighted;
   FG_TRY(find_weighted_dof(ctx, e));

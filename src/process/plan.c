@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/splitmix.h"
 #include "core/text.h"
 #include "process/plan_words.h"
 
@@ -157,14 +158,6 @@ static fg_status add_centres(fg_context *ctx, const fg_plan_options *o, fg_plan 
   return FG_OK;
 }
 
-/* SplitMix64 (Steele, Lea and Flood 2014): one number of state, the same order everywhere. */
-static uint64_t next_random(uint64_t *state) {
-  uint64_t z = *state += 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return z ^ z >> 31;
-}
-
 /* Sort key: each run gets a random key for its plot and one of its own; sorting by block, plot key,
  * own key shuffles plots within blocks and runs within plots. */
 typedef struct sort_key {
@@ -203,9 +196,9 @@ static void draw_keys(const fg_plan_options *o, const fg_plan *plan, sort_key *k
   bool restricted = is_restricted(o);
   for (size_t i = 0; i < plan->runs; i++) {
     keys[i].run = plan->run[i];
-    keys[i].own = next_random(&state);
+    keys[i].own = fg_splitmix_next(&state);
     if (!restricted) continue;
-    keys[i].plot = next_random(&state);
+    keys[i].plot = fg_splitmix_next(&state);
     for (size_t k = 0; k < i; k++)
       if (same_plot(o, &keys[k].run, &keys[i].run)) {
         keys[i].plot = keys[k].plot;

@@ -116,16 +116,16 @@ static void find_variance(size_t rows, fg_split_plot *result) {
 }
 
 fg_status fg_split_plot_subtract_dof(fg_context *ctx, const fg_table *table, const char *plot,
-                                     size_t dof, const double *taken, fg_split_plot *result) {
+                                     size_t dof, const double *subtracted, fg_split_plot *result) {
   fg_levels plots = {0};
   double *first = NULL;
   bool whole = true;
   FG_TRY(fg_table_levels(ctx, table, plot, true, &plots));
   fg_status status = fg_memory_allocate(ctx, plots.count, sizeof *first, (void **)&first);
   for (size_t i = 0; status == FG_OK && i < table->rows; i++)
-    first[plots.index[i]] = taken[i];
+    first[plots.index[i]] = subtracted[i];
   for (size_t i = 0; status == FG_OK && i < table->rows; i++)
-    whole = whole && taken[i] == first[plots.index[i]];
+    whole = whole && subtracted[i] == first[plots.index[i]];
   free(first);
   fg_levels_free(&plots);
   FG_TRY(status);
@@ -136,7 +136,7 @@ fg_status fg_split_plot_subtract_dof(fg_context *ctx, const fg_table *table, con
                    "of freedom: none is left to judge by; add runs",
                    dof, whole ? "whole plots" : "runs", *left);
   if (*left) *left -= dof;
-  *(whole ? &result->taken_plots : &result->taken_runs) += dof;
+  *(whole ? &result->subtracted_from_plots : &result->subtracted_from_runs) += dof;
   if (result->plot_dof) result->plot_ms = result->plot_ss / (double)result->plot_dof;
   if (result->run_dof) result->run_ms = result->run_ss / (double)result->run_dof;
   find_variance(table->rows, result);

@@ -5,12 +5,7 @@
 
 #include <gsl/gsl_cdf.h>
 
-static uint64_t splitmix_next(uint64_t *state) {
-  uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
+#include "core/splitmix.h"
 
 static uint64_t rotate_left(uint64_t value, int bits) {
   return (value << bits) | (value >> (64 - bits));
@@ -18,10 +13,10 @@ static uint64_t rotate_left(uint64_t value, int bits) {
 
 void fg_random_seed(fg_random *random, uint64_t seed, uint64_t stream, uint64_t index) {
   uint64_t state = seed;
-  state = splitmix_next(&state) ^ stream;
-  state = splitmix_next(&state) ^ index;
+  state = fg_splitmix_next(&state) ^ stream;
+  state = fg_splitmix_next(&state) ^ index;
   for (int i = 0; i < 4; i++)
-    random->state[i] = splitmix_next(&state);
+    random->state[i] = fg_splitmix_next(&state);
 }
 
 static uint64_t next_bits(fg_random *random) {

@@ -47,9 +47,10 @@ void fg_edge_fit_find_frame(fg_edge_fit *edge_fit) {
   for (int axis = 0; axis < 2; axis++)
     f->low_mm[axis] = 0;
   for (size_t v = 0; v < edge_fit->view_count; v++) {
-    const fg_measurement *m = edge_fit->views[v].measurement;
-    f->high_mm[0] = fmax(f->high_mm[0], (double)m->width_px * 25.4 / m->dpi[0]);
-    f->high_mm[1] = fmax(f->high_mm[1], (double)m->height_px * 25.4 / m->dpi[1]);
+    double size_mm[2];
+    fg_measurement_size_mm(edge_fit->views[v].measurement, size_mm);
+    for (int axis = 0; axis < 2; axis++)
+      f->high_mm[axis] = fmax(f->high_mm[axis], size_mm[axis]);
   }
   for (int axis = 0; axis < 2; axis++) {
     f->centre_mm[axis] = 0.5 * (f->low_mm[axis] + f->high_mm[axis]);

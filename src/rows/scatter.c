@@ -29,7 +29,7 @@ enum { POLYNOMIALS_MIN = 6, POLYNOMIALS_MAX = 16, ROWS_EACH = 4 };
 /* Dof of such a wave, shorter waves included: on 200 clean renders the noise of long waves scatters
  * by a tenth (reports/loop_rough.md, p-values). */
 #define DOF_PER_WAVE 2.0
-/* Arcs whose square exceeds the median one by so many standard errors have another deviation: a
+/* Arcs whose square exceeds the median one by this many standard errors have another deviation: a
  * step, dirt. At most this share of the arcs. */
 #define ARC_SIGMAS 5.0
 #define ARCS_MAX   0.25

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "core/select.h"
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 
 /* Draws of the null; number of patterns. */
 enum { DRAWS = 4999, PATTERNS = 2 };
@@ -130,9 +130,9 @@ static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[PA
     fg_bump_pattern one;
     drawn.noise_square = 0;
     for (size_t i = 0; i < at->n; i++)
-      drawn.value[i] = fg_engine_random_normal(&seed);
+      drawn.value[i] = fg_splitmix_normal(&seed);
     for (double f = 0; f < at->noise_dof; f++)
-      drawn.noise_square += pow(fg_engine_random_normal(&seed), 2);
+      drawn.noise_square += pow(fg_splitmix_normal(&seed), 2);
     beyond[0] += best_apart(&drawn, &by, &limit) >= gain[0];
     beyond[1] += best_cycle(&drawn, &one) >= gain[1];
   }

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/splitmix.h"
 #include "scan_loop/bumps.h"
-#include "table_loop/engine_random.h"
 
 enum { DRAWS = 1999 };
 
@@ -70,7 +70,7 @@ static void shuffle(const trend_workspace *workspace, uint64_t *seed, double *v)
   for (size_t f = 0; f < workspace->foils; f++)
     for (size_t i = workspace->first[f + 1] - 1; i > workspace->first[f]; i--) {
       size_t from = workspace->first[f], span = i - from + 1;
-      size_t k = from + (size_t)(fg_engine_random_uniform(seed) * (double)span);
+      size_t k = from + (size_t)(fg_splitmix_uniform(seed) * (double)span);
       double value = v[i];
       v[i] = v[k];
       v[k] = value;
@@ -104,7 +104,7 @@ static double sign_p(double *product, size_t n, uint64_t seed) {
   for (size_t d = 1; d <= draws; d++) {
     uint64_t signs = d;
     for (size_t i = 0; n > FEW && i < n; i++) /* each draw flips the one before it anew */
-      if (fg_engine_random_next(&seed) >> 63) product[i] = -product[i];
+      if (fg_splitmix_next(&seed) >> 63) product[i] = -product[i];
     beyond += signed_sum(product, n, n > FEW ? 0 : signs) >= observed;
   }
   return (double)beyond / (double)(draws + 1);

@@ -111,7 +111,7 @@ static double turn_between(const fg_edge_fit_row *bump, const fg_edge_fit_row *l
  * the search for an arc's end keeps clear of it for the blur (geometry/arcs.c). */
 static double clear_mm(const fg_edge_fit_view *view) {
   const fg_strip *strip = &view->foil->strip;
-  double blur_mm = 1e-3 * fmax(strip->blur_left_um, strip->blur_right_um);
+  double blur_mm = 1e-3 * fg_strip_blur_um(strip);
   return FG_EDGE_FIT_BLOCK * strip->step_mm + 2 * (1.5 * blur_mm + strip->step_mm);
 }
 

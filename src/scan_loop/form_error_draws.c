@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 
 enum { DRAWS = 64 };
 #define SEED 1
@@ -46,7 +46,7 @@ typedef struct drawing {
 static void fill_normals(size_t count, double *normal) {
   uint64_t state = SEED;
   for (size_t i = 0; i < DRAWS * count; i++)
-    normal[i] = fg_engine_random_normal(&state);
+    normal[i] = fg_splitmix_normal(&state);
 }
 
 static fg_status draw_one(fg_context *ctx, void *shared, size_t draw) {

@@ -125,34 +125,48 @@ static fg_status find_moments(fg_context *ctx, fg_evidence_search *s, const fg_c
   return status;
 }
 
+/* Models that deviations are averaged over, the likeliest first, with weights that sum to 1. */
+typedef struct weighted_models {
+  const fg_evidence_model *model[MODELS_MAX];
+  double weight[MODELS_MAX];
+  size_t count;
+} weighted_models;
+
 /* ---- deviations too small for a model ---- */
 
 /* Returns true for an effect of the part that no model of weight shows. */
-static bool is_hidden(const fg_evidence_option *option, const fg_evidence_model *const *list,
-                      const double *weight, size_t models) {
+static bool is_hidden(const fg_evidence_option *option, const weighted_models *models) {
   if (!option->effect || !option->effect->midline || option->effect->starts) return false;
-  for (size_t m = 0; m < models; m++)
-    if ((!m || weight[m] >= SHARE_MIN) && fg_evidence_holds(list[m], option->effect)) return false;
+  for (size_t m = 0; m < models->count; m++)
+    if ((!m || models->weight[m] >= SHARE_MIN) &&
+        fg_evidence_holds(models->model[m], option->effect))
+      return false;
   return true;
 }
+
+/* The likeliest model's moments, room behind them for those of a model with one effect more, and by
+ * circle the uncertainty that hidden effects give. */
+typedef struct hidden_effects {
+  fg_form_error_moments likeliest, with_one_more;
+  double *u_um;
+} hidden_effects;
 
 /* Widens by an effect of the part that the model lacks: mean square distance of the deviation with
  * it from that without. */
 static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
                                  const fg_evidence_model *model, const fg_evidence_option *option,
-                                 fg_form_error_moments *room, double *hidden) {
+                                 hidden_effects *hidden) {
   fg_evidence_part part = {.effect = option->effect, .first = option->first, .count = option->each};
   fg_evidence_model with = *model;
-  fg_form_error_moments own =
-      fg_form_error_moments_in(room->mean + FG_FORM_ERROR_MOMENTS * c->count, c);
+  fg_form_error_moments *own = &hidden->with_one_more;
   fg_evidence_effect_variances(&s->request.prior, option->effect, option->each, part.variance);
   with.part[with.parts++] = &part;
-  memset(own.mean, 0, FG_FORM_ERROR_MOMENTS * c->count * sizeof *own.mean);
-  FG_TRY(find_moments(ctx, s, c, &with, &own));
+  memset(own->mean, 0, FG_FORM_ERROR_MOMENTS * c->count * sizeof *own->mean);
+  FG_TRY(find_moments(ctx, s, c, &with, own));
   for (size_t k = 0; k < c->count; k++) {
-    double before = room->mean[k];
-    double square = own.square[k] - 2 * before * own.mean[k] + before * before;
-    hidden[k] = fmax(hidden[k], sqrt(fmax(0, square)));
+    double before = hidden->likeliest.mean[k];
+    double square = own->square[k] - 2 * before * own->mean[k] + before * before;
+    hidden->u_um[k] = fmax(hidden->u_um[k], sqrt(fmax(0, square)));
   }
   return FG_OK;
 }
@@ -160,14 +174,13 @@ static fg_status widen_by_option(fg_context *ctx, fg_evidence_search *s, const f
 /* Uncertainty by effects of the part that the models lack, whether or not they are worth one: a
  * foil is not round because nothing was found. */
 static fg_status find_hidden(fg_context *ctx, fg_evidence_search *s, const fg_circles *c,
-                             const fg_evidence_model *const *list, const double *weight,
-                             size_t models, fg_form_error_moments *room, double *hidden) {
-  const fg_evidence_model *model = list[0];
+                             const weighted_models *models, hidden_effects *hidden) {
+  const fg_evidence_model *model = models->model[0];
   if (model->parts == FG_EVIDENCE_PARTS) return FG_OK;
-  FG_TRY(find_moments(ctx, s, c, model, room));
+  FG_TRY(find_moments(ctx, s, c, model, &hidden->likeliest));
   for (size_t o = 0; o < s->option_count; o++)
-    if (is_hidden(&s->options[o], list, weight, models))
-      FG_TRY(widen_by_option(ctx, s, c, model, &s->options[o], room, hidden));
+    if (is_hidden(&s->options[o], models))
+      FG_TRY(widen_by_option(ctx, s, c, model, &s->options[o], hidden));
   return FG_OK;
 }
 
@@ -212,53 +225,56 @@ static fg_form_error combine_models(const fg_form_error_moments *m, size_t model
   return (fg_form_error){.um = mean, .u_um = u};
 }
 
-static size_t list_models(const fg_evidence_search *s, const fg_evidence_verdict *verdict,
-                          const fg_evidence_model **list, double *weight) {
+static void list_models(const fg_evidence_search *s, const fg_evidence_verdict *verdict,
+                        weighted_models *models) {
   bool named = verdict->outcome == FG_EVIDENCE_FOUND || verdict->outcome == FG_EVIDENCE_TIED;
   const fg_evidence_model *from = named ? verdict->tie : s->models;
-  size_t available = named ? verdict->ties : s->count, count = 0;
+  size_t available = named ? verdict->ties : s->count;
   double top = -INFINITY, total = 0;
   for (size_t m = 0; m < available; m++)
     top = fmax(top, from[m].score);
-  for (size_t m = 0; m < available && count < MODELS_MAX; m++) {
+  models->count = 0;
+  for (size_t m = 0; m < available && models->count < MODELS_MAX; m++) {
     double own = fmax(exp(from[m].score - top), named ? LISTED_MIN : 0);
     if (own < WEIGHT_MIN) continue;
-    list[count] = &from[m];
-    weight[count++] = own;
+    models->model[models->count] = &from[m];
+    models->weight[models->count++] = own;
     total += own;
   }
-  for (size_t m = 0; m < count; m++)
-    weight[m] /= total;
-  return count;
+  for (size_t m = 0; m < models->count; m++)
+    models->weight[m] /= total;
 }
 
 fg_status fg_scan_loop_find_form_errors(fg_context *ctx, fg_scan_loop *loop, fg_evidence_search *s,
                                         const fg_evidence_verdict *verdict) {
-  const fg_evidence_model *list[MODELS_MAX];
-  double weight[MODELS_MAX], *numbers = NULL;
-  fg_form_error_moments m[MODELS_MAX + 1];
+  weighted_models models;
+  double *numbers = NULL;
+  fg_form_error_moments m[MODELS_MAX];
   fg_circles circles;
   fg_status status = FG_OK;
-  size_t count = list_models(s, verdict, list, weight);
+  list_models(s, verdict, &models);
   FG_TRY(fg_circles_open(ctx, &loop->edge_fit, &circles));
   /* of every model, of the likeliest again, and of it with one effect more */
-  size_t each = FG_FORM_ERROR_MOMENTS * circles.count;
+  size_t each = FG_FORM_ERROR_MOMENTS * circles.count, count = models.count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, each * (count + 2) + circles.count, sizeof *numbers,
                                  (void **)&numbers));
-  for (size_t k = 0; k <= count; k++) {
+  for (size_t k = 0; k < count; k++) {
     m[k] = fg_form_error_moments_in(numbers + k * each, &circles);
-    m[k].weight = k < count ? weight[k] : 0;
-    if (k < count) FG_TRY_EXIT(find_moments(ctx, s, &circles, list[k], &m[k]));
+    m[k].weight = models.weight[k];
+    FG_TRY_EXIT(find_moments(ctx, s, &circles, models.model[k], &m[k]));
   }
-  double *hidden = numbers + (count + 2) * each;
-  FG_TRY_EXIT(find_hidden(ctx, s, &circles, list, weight, count, &m[count], hidden));
+  hidden_effects hidden = {.likeliest = fg_form_error_moments_in(numbers + count * each, &circles),
+                           .with_one_more =
+                               fg_form_error_moments_in(numbers + (count + 1) * each, &circles),
+                           .u_um = numbers + (count + 2) * each};
+  FG_TRY_EXIT(find_hidden(ctx, s, &circles, &models, &hidden));
   if (!loop->form_errors)
     FG_TRY_EXIT(fg_memory_allocate(ctx, circles.count, sizeof *loop->form_errors,
                                    (void **)&loop->form_errors));
   for (size_t k = 0; k < circles.count; k++)
     loop->form_errors[k] = circles.first[k + 1] == circles.first[k] ? (fg_form_error){.um = 0}
                            : circles.cut[k] ? (fg_form_error){.um = NAN, .u_um = NAN}
-                                            : combine_models(m, count, k, hidden[k]);
+                                            : combine_models(m, count, k, hidden.u_um[k]);
 exit:
   free(numbers);
   fg_circles_close(&circles);

@@ -91,23 +91,32 @@ static double preference(const fg_scan_loop *loop, const apart *a) {
   return rows * log(together / alone) - more * log(rows);
 }
 
-/* Names the bump that differs most between two views of a part, as measured. */
+/* A bump on two scans; NULL: none. */
+typedef struct bump_pair {
+  const fg_bump *one, *other;
+} bump_pair;
+
+/* Replaces the pair by a bump of two scans whose radius differs more between them. */
+static void compare_bumps(const fg_foil *one, const fg_foil *other, bump_pair *farthest) {
+  for (size_t i = 0; i < other->bump_count; i++)
+    for (size_t k = 0; k < one->bump_count; k++) {
+      const bump_pair pair = {&one->bumps[k], &other->bumps[i]};
+      if (pair.one->number != pair.other->number) continue;
+      double apart_mm = fabs(pair.other->radius_mm - pair.one->radius_mm);
+      if (!farthest->one || apart_mm > fabs(farthest->one->radius_mm - farthest->other->radius_mm))
+        *farthest = pair;
+    }
+}
+
+/* Names the bump that differs most between two scans of a part, as measured. */
 static fg_status fail_two_foils(fg_context *ctx, const fg_scan_loop *loop, const apart *a) {
   const fg_edge_fit *edge_fit = &loop->edge_fit;
-  const fg_bump *one = NULL, *other = NULL;
+  const fg_edge_fit_view *views = edge_fit->views;
+  bump_pair farthest = {NULL, NULL};
   for (size_t v = 0; v < edge_fit->view_count; v++)
-    for (size_t w = 0; w < v; w++) {
-      if (edge_fit->views[v].part != edge_fit->views[w].part) continue;
-      const fg_foil *f = edge_fit->views[v].foil, *g = edge_fit->views[w].foil;
-      for (size_t i = 0; i < f->bump_count; i++)
-        for (size_t k = 0; k < g->bump_count; k++) {
-          if (f->bumps[i].number != g->bumps[k].number) continue;
-          double apart_mm = fabs(f->bumps[i].radius_mm - g->bumps[k].radius_mm);
-          if (one && !(apart_mm > fabs(one->radius_mm - other->radius_mm))) continue;
-          one = &g->bumps[k];
-          other = &f->bumps[i];
-        }
-    }
+    for (size_t w = 0; w < v; w++)
+      if (views[v].part == views[w].part) compare_bumps(views[w].foil, views[v].foil, &farthest);
+  const fg_bump *one = farthest.one, *other = farthest.other;
   return fg_fail(ctx, FG_ERR_DATA,
                  "--same-foil: the scans are not of one foil: a geometry for each leaves %.3f um, "
                  "one for all of them %.3f um whatever the scanner does; bump %d is %.4f mm in one "

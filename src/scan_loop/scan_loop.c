@@ -156,11 +156,11 @@ static fg_status say_without(fg_context *ctx, fg_scan_loop *loop) {
 
 static fg_status say_lossy(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->scan_count; i++)
-    if (loop->before[i].jpeg_quality)
+    if (loop->before[i].file.jpeg_quality)
       FG_TRY(fg_scan_loop_bumps_note(ctx, &loop->bumps,
                                      "%.120s was compressed with loss (JPEG, quality %d), which "
                                      "moves edges: scan to PNG or TIFF",
-                                     loop->before[i].scan, loop->before[i].jpeg_quality));
+                                     loop->before[i].scan, loop->before[i].file.jpeg_quality));
   return FG_OK;
 }
 
@@ -353,13 +353,13 @@ exit:
   return status;
 }
 
-fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
-                           size_t count, const fg_design *design,
-                           const fg_scan_loop_options *options, fg_scan_loop **result) {
+fg_status fg_scan_loop_run(fg_context *ctx, const fg_scan_loop_scans *scans,
+                           const fg_design *design, const fg_scan_loop_options *options,
+                           fg_scan_loop **result) {
   fg_scan_loop *loop;
   *result = NULL;
-  FG_TRY(create_loop(ctx, hold_out, count, options, &loop));
-  fg_status status = measure_all(ctx, paths, design, loop);
+  FG_TRY(create_loop(ctx, scans->hold_out, scans->count, options, &loop));
+  fg_status status = measure_all(ctx, scans->paths, design, loop);
   if (status == FG_OK) return close_loop(ctx, loop, result);
   fg_scan_loop_free(loop);
   return status;

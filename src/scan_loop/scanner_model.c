@@ -49,9 +49,9 @@ static double find_reach(const fg_field_frame *frame, const fg_measurement *m) {
   for (size_t k = 0; m->grid && k < m->grid->count; k++)
     reach = fmax(reach, mark_reach(frame, &m->grid->marks[k]));
   if (m->foil_count || m->disc_count || m->grid) return reach;
-  double size[2] = {(double)m->width_px * 25.4 / m->dpi[0],
-                    (double)m->height_px * 25.4 / m->dpi[1]};
-  return reach_of(frame, frame->low_mm, size);
+  double size_mm[2];
+  fg_measurement_size_mm(m, size_mm);
+  return reach_of(frame, frame->low_mm, size_mm);
 }
 
 /* A curve found over one length is unreliable beyond it, and meaningless at twice that. */

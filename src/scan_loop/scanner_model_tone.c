@@ -15,7 +15,7 @@
 #define BLUR_RATIO     1.25
 #define ASYMMETRY_MAX  0.02
 #define CONTRAST_RATIO 1.5
-/* A change of the shown level is significant above so many of its deviations, and above the
+/* A change of the shown level is significant above this many of its deviations, and above the
  * difference of a strip and a disc of one scan. */
 #define SHOWN_SIGMAS 3.0
 #define SHOWN_MIN    0.01
@@ -219,7 +219,7 @@ fg_status fg_model_tone_apply(fg_context *ctx, const fg_model_tone *tone, unsign
   scan_state state;
   m->tone_note[0] = 0;
   if (!tone->gauges || m->picture.level_known || !see_state(m, &state)) return FG_OK;
-  const unsigned loss = m->jpeg_quality ? FG_PICTURE_BLOCK_NOISE : 0;
+  const unsigned loss = m->file.jpeg_quality ? FG_PICTURE_BLOCK_NOISE : 0;
   const char *other = difference(tone, &state, m->picture.findings | loss);
   if (!other) {
     fg_level level = tone->level;

@@ -318,11 +318,12 @@ static void append_count(char *words, size_t size, size_t count, const char *one
 
 static void find_words(fg_exported_lot *exported) {
   const fg_lot_outcome *outcome = &exported->outcome;
-  const size_t *by = outcome->foils_by_verdict, size = sizeof exported->words;
+  const size_t *by = outcome->foils.by_verdict, size = sizeof exported->words;
   char *words = exported->words;
   fg_text_clip(words, size, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told",
-               outcome->foils, fg_plural(outcome->foils), outcome->scans, fg_plural(outcome->scans),
-               by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
+               outcome->foils.count, fg_plural(outcome->foils.count), outcome->scans.count,
+               fg_plural(outcome->scans.count), by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
+               by[FG_VERDICT_UNDECIDED]);
   append_count(words, size, by[FG_VERDICT_NONE], "without tolerances", "without tolerances");
   append_count(words, size, by[FG_VERDICT_NOT_MEASURED], "foil not measured", "foils not measured");
   append_count(words, size, exported->replaced, "foil counts with its later scan",

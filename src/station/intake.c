@@ -176,10 +176,10 @@ static void append_card_words(char *words, const char *format, ...) {
 
 /* Adds to the card's words that the scan is lossy, or that foils may be missing. */
 static void note_file(const fg_measurement *measurement, char *words) {
-  if (measurement->jpeg_quality)
+  if (measurement->file.jpeg_quality)
     append_card_words(words,
                       "compressed with loss (JPEG, quality %d): uncertainties are wider for it",
-                      measurement->jpeg_quality);
+                      measurement->file.jpeg_quality);
   if (strstr(measurement->warning, FG_SCAN_MORE_IMAGES))
     append_card_words(words, "it holds more than one image: only the first was measured");
 }

@@ -210,8 +210,8 @@ static fg_status insert_scan(fg_context *ctx, sqlite3 *writer, const fg_station_
   fg_query_integer(&query, fg_station_now());
   fg_query_number(&query, measurement->dpi[0]);
   fg_query_number(&query, measurement->dpi[1]);
-  fg_query_integer(&query, measurement->width_px);
-  fg_query_integer(&query, measurement->height_px);
+  fg_query_integer(&query, measurement->file.width_px);
+  fg_query_integer(&query, measurement->file.height_px);
   fg_query_text(&query, fg_verdict_word(verdict));
   fg_query_text(&query, kept->withheld);
   fg_query_text(&query, measurement->warning[0] ? measurement->warning : NULL);

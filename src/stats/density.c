@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/splitmix.h"
 
 enum { BIN_ABOVE = 8192, GRID_POINTS = 4096, PAIR_BINS = 1000, SEARCH_POINTS = 1024 };
 
@@ -262,20 +263,11 @@ double fg_density_mode(const fg_density *density) {
   return (low + high) / 2;
 }
 
-/* splitmix64 (Steele, Lea and Flood 2014), to (0, 1). */
-static double next_uniform(uint64_t *seed) {
-  uint64_t z = *seed += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return ((double)((z ^ (z >> 31)) >> 11) + 0.5) * 0x1p-53;
-}
-
 /* A draw is one of the values and the kernel's own normal error. */
 double fg_density_draw(const fg_density *density, uint64_t *seed) {
   double total = density->cumulative[density->count - 1];
-  size_t i = first_from(density->cumulative, density->count, next_uniform(seed) * total);
+  size_t i = first_from(density->cumulative, density->count, fg_splitmix_uniform(seed) * total);
   if (i >= density->count) i = density->count - 1;
-  double radius = sqrt(-2 * log(next_uniform(seed)));
-  double normal = radius * cos(6.28318530717958647692 * next_uniform(seed));
+  double normal = fg_splitmix_normal(seed);
   return density->value[i] + density->bandwidth * normal;
 }

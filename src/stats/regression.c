@@ -117,13 +117,13 @@ static fg_status solve_least_squares(fg_context *ctx, fg_fit *fit, double tolera
 
 static fg_status subtract_dof(fg_context *ctx, const fg_regression_options *options,
                               fg_regression *regression) {
-  size_t dof = regression->rows - regression->rank, taken = options->dof_taken;
-  if (taken && dof && taken >= dof)
+  size_t dof = regression->rows - regression->rank, subtracted = options->dof_subtracted;
+  if (subtracted && dof && subtracted >= dof)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%zu runs, %zu coefficients and %zu parameters of what was taken out before: no "
                    "freedom is left to judge anything by; leave terms out, or add runs",
-                   regression->rows, regression->rank, taken);
-  regression->residual_dof = dof ? dof - taken : 0;
+                   regression->rows, regression->rank, subtracted);
+  regression->residual_dof = dof ? dof - subtracted : 0;
   return FG_OK;
 }
 

@@ -211,7 +211,8 @@ fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit,
     order[i] = i;
   qsort_r(order, rows, sizeof *order, compare_runs, (void *)(size_t)fit->model);
   fg_extended pure = pure_error(fit, order, rows, &reg->pure_dof);
-  subtract_pure(options->dof_taken, differs_within(fit, order, rows, options->taken), reg);
+  subtract_pure(options->dof_subtracted, differs_within(fit, order, rows, options->subtracted),
+                reg);
   free(order);
   if (!reg->pure_dof) return FG_OK;
   const fg_extended *e = fit->solution.residual;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/splitmix.h"
 #include "core/spread.h"
 
 enum {
@@ -113,12 +114,8 @@ static bool choose_next(const deal *d) {
   return true;
 }
 
-/* splitmix64 (Steele, Lea and Flood 2014). */
 static size_t draw_below(uint64_t *seed, size_t limit) {
-  uint64_t z = *seed += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return (size_t)((double)((z ^ (z >> 31)) >> 11) * 0x1p-53 * (double)limit);
+  return (size_t)((double)(fg_splitmix_next(seed) >> 11) * 0x1p-53 * (double)limit);
 }
 
 /* Shuffles the values: their order stays as it was at the begin. */

@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/select.h"
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 #include "table_loop/noise_scores.h"
 #include "table_loop/null_residual.h"
 #include "table_loop/row_tails.h"
@@ -52,9 +52,9 @@ static void draw_one(const drawing *d, uint64_t *seed, double *y) {
   const fg_engine_training *training = d->workspace->training;
   size_t n = training->n;
   for (size_t i = 0; i < n; i++)
-    y[i] = d->permuted ? d->white[i] : d->sd * fg_engine_random_normal(seed);
+    y[i] = d->permuted ? d->white[i] : d->sd * fg_splitmix_normal(seed);
   for (size_t i = n; d->permuted && i > 1; i--) {
-    size_t k = (size_t)(fg_engine_random_uniform(seed) * (double)i);
+    size_t k = (size_t)(fg_splitmix_uniform(seed) * (double)i);
     double other = y[k];
     y[k] = y[i - 1];
     y[i - 1] = other;

@@ -6,9 +6,9 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/splitmix.h"
 #include "core/spread.h"
 #include "core/text.h"
-#include "table_loop/engine_random.h"
 #include "table_loop/grid.h"
 #include "table_loop/influence.h"
 #include "table_loop/response_scale.h"
@@ -99,7 +99,7 @@ static fg_status bootstrap(fg_context *ctx, fg_engine_run *run, double interval[
   for (size_t b = 0; b < DRAWS; b++) {
     double before = 0, after = 0;
     for (size_t i = 0; i < count; i++) {
-      size_t g = group[(size_t)(fg_engine_random_uniform(&seed) * (double)count)];
+      size_t g = group[(size_t)(fg_splitmix_uniform(&seed) * (double)count)];
       before += sum[2 * g];
       after += sum[2 * g + 1];
     }

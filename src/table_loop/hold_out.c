@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/splitmix.h"
 #include "core/text.h"
-#include "table_loop/engine_random.h"
 #include "table_loop/parts.h"
 
 /* Holds out every row of the chosen groups. */
@@ -25,7 +25,7 @@ static fg_status keep_share(fg_context *ctx, const fg_loop_table_state *build, s
   for (size_t i = 0; i < groups; i++)
     order[i] = i;
   for (size_t i = 0; i < count; i++) {
-    size_t k = i + (size_t)(fg_engine_random_uniform(&seed) * (double)(groups - i));
+    size_t k = i + (size_t)(fg_splitmix_uniform(&seed) * (double)(groups - i));
     size_t drawn = order[k];
     order[k] = order[i];
     order[i] = drawn;

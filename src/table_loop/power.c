@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/splitmix.h"
 #include "table_loop/assess.h"
-#include "table_loop/engine_random.h"
 
 enum { DRAWS = 60, HALVINGS = 14 };
 static const double wanted = 0.8;
@@ -70,7 +70,7 @@ static void draw_noise(power_workspace *power, fg_engine_noise noise, uint64_t s
   for (size_t b = 0; b < DRAWS; b++) {
     double *y = power->draws + b * n;
     for (size_t i = 0; i < n; i++)
-      y[i] = fg_engine_random_normal(&seed);
+      y[i] = fg_splitmix_normal(&seed);
     fg_engine_colour(workspace->training, noise, y);
     for (size_t j = 0; j < workspace->noises; j++) {
       memcpy(power->white, y, n * sizeof *y);

@@ -12,7 +12,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "core/memory.h"
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 #include "table_loop/run.h"
 
 /* Level of all residual tests together. The effects sought by name use most of FG_LOOP_ACCEPT_P. */
@@ -119,9 +119,9 @@ static void score_tests(residual_tests *b, const double *white, double value[FG_
 static void draw_residuals(const residual_tests *b, bool permuted, uint64_t *seed, double *y) {
   size_t n = b->training.n;
   for (size_t i = 0; i < n; i++)
-    y[i] = permuted ? b->kept[i] : fg_engine_random_normal(seed);
+    y[i] = permuted ? b->kept[i] : fg_splitmix_normal(seed);
   for (size_t i = n; permuted && i > 1; i--) {
-    size_t k = (size_t)(fg_engine_random_uniform(seed) * (double)i);
+    size_t k = (size_t)(fg_splitmix_uniform(seed) * (double)i);
     double other = y[k];
     y[k] = y[i - 1];
     y[i - 1] = other;

@@ -6,7 +6,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 
 /* Tails of measured tables (dof) with their prior probabilities, a choice (power and false claims
  * with heavy tails: reports/loop_power.md). The last is normal. */
@@ -101,10 +101,10 @@ double fg_engine_tails_equivalent(double size, double own) {
 
 /* Student's t from normal numbers: sums of squares need a whole number of dof. */
 static double draw_error(double dof, uint64_t *seed) {
-  double normal = fg_engine_random_normal(seed), squares = 0;
+  double normal = fg_splitmix_normal(seed), squares = 0;
   if (isinf(dof)) return normal;
   for (double k = 0; k < dof; k++) {
-    double other = fg_engine_random_normal(seed);
+    double other = fg_splitmix_normal(seed);
     squares += other * other;
   }
   return normal / sqrt(squares / dof) * unit_of(dof);
@@ -112,7 +112,7 @@ static double draw_error(double dof, uint64_t *seed) {
 
 void fg_engine_tails_draw(const double weight[FG_ENGINE_TAILS], size_t n, uint64_t *seed,
                           double *error) {
-  double at = fg_engine_random_uniform(seed);
+  double at = fg_splitmix_uniform(seed);
   size_t k = 0;
   while (k + 1 < FG_ENGINE_TAILS && at >= weight[k])
     at -= weight[k++];

@@ -11,8 +11,8 @@
  * sqrt(1 + lambda c'c), and one more such root removes it. */
 #include <math.h>
 
+#include "core/splitmix.h"
 #include "table_loop/engine.h"
-#include "table_loop/engine_random.h"
 
 /* c at one row of a group that begins at `first`. */
 static double level_weight(const fg_engine_training *training, double rho, size_t first, size_t i) {
@@ -147,9 +147,9 @@ void fg_engine_colour_rows(const fg_engine_training *training, fg_engine_noise n
   double row = rms(y, training->n), sd = sqrt(noise.lambda) * row;
   double outer_sd = sqrt(noise.outer) * row;
   for (size_t b = 0; noise.lambda > 0 && b < training->levels; b++)
-    add_level(training, noise.rho, b, sd * fg_engine_random_normal(seed), y);
+    add_level(training, noise.rho, b, sd * fg_splitmix_normal(seed), y);
   for (size_t o = 0; noise.outer > 0 && o < training->outers; o++) {
-    double level = outer_sd * fg_engine_random_normal(seed);
+    double level = outer_sd * fg_splitmix_normal(seed);
     for (size_t k = training->outer_start[o]; k < training->outer_start[o + 1]; k++)
       add_level(training, noise.rho, training->outer_block[k], level, y);
   }

@@ -77,11 +77,11 @@ typedef struct tally {
 static void score(const truth *t, double run[RUNS_MAX][FACTORS_MAX], size_t runs, double sd,
                   const fg_experiment *whole, uint64_t *seed, tally *out) {
   const fg_experiment *e = fg_experiment_best(whole);
-  const fg_prediction *p = &e->optimum.prediction;
-  double mean = response_at(t, run, runs, e, &e->optimum);
+  const fg_prediction *p = &e->best.optimum.prediction;
+  double mean = response_at(t, run, runs, e, &e->best.optimum);
   double student = fg_distribution_t_quantile(0.975, p->dof) * p->standard_error;
-  out->none += whole->all_idle;
-  if (whole->all_idle) return;
+  out->none += whole->idle.all;
+  if (whole->idle.all) return;
   out->asked++;
   out->reduced += e != whole;
   out->student += fabs(p->mean - mean) <= student;

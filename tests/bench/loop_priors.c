@@ -17,7 +17,8 @@ static fg_status run(fg_context *ctx, const fg_scan_loop_options *options, const
   fg_design design;
   fg_scan_loop *loop = NULL;
   fg_design_default(&design);
-  fg_status status = fg_scan_loop_run(ctx, paths, hold_out, count, &design, options, &loop);
+  const fg_scan_loop_scans scans = {paths, hold_out, count};
+  fg_status status = fg_scan_loop_run(ctx, &scans, &design, options, &loop);
   if (status != FG_OK) return status;
   FILE *file = fopen(out, "w");
   status = file ? fg_scan_loop_write_json(ctx, loop, file) : FG_ERR_IO;

@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/splitmix.h"
 #include "table_loop/assess.h"
 #include "table_loop/engine.h"
-#include "table_loop/engine_random.h"
 
 enum { ROWS_MAX = 400, SIZES = 5 };
 
@@ -21,14 +21,14 @@ static const int tails[] = {0, -1, 10, 6, 4, 3};
 static const char *const tail_words[] = {"normal", "Laplace", "t10", "t6", "t4", "t3"};
 
 static double draw(int tail, uint64_t *seed) {
-  double normal = fg_engine_random_normal(seed), squares = 0;
+  double normal = fg_splitmix_normal(seed), squares = 0;
   if (tail == 0) return normal;
   if (tail < 0) {
-    double u = fg_engine_random_uniform(seed) - 0.5;
+    double u = fg_splitmix_uniform(seed) - 0.5;
     return copysign(log1p(-2 * fabs(u)), u);
   }
   for (int k = 0; k < tail; k++) {
-    double other = fg_engine_random_normal(seed);
+    double other = fg_splitmix_normal(seed);
     squares += other * other;
   }
   return normal / sqrt(squares / tail);
@@ -99,7 +99,7 @@ int main(int argc, char **argv) {
     for (double size = 6; size <= 10; size += 2) {
       size_t found = 0, suspected = 0;
       for (size_t t = 0; t < tables; t++) {
-        size_t wrong = (size_t)(fg_engine_random_uniform(&seed) * (double)row_counts[s]);
+        size_t wrong = (size_t)(fg_splitmix_uniform(&seed) * (double)row_counts[s]);
         fg_engine_outlier outlier = assess(row_counts[s], 0, wrong, size, &seed);
         bool right = outlier.candidate.rows == 1 && outlier.candidate.row[0] == wrong;
         found += right && outlier.p_value < 0.01;

@@ -21,7 +21,7 @@ static inline void foil_rows_open(foil_rows *f) {
   fg_context ctx = {0};
   f->m = (fg_measurement){.design = synthetic_design(), .dpi = {4800, 4800}, .foil_count = 1};
   f->m.nominal = synthetic_nominal(&f->m.design);
-  f->m.width_px = f->m.height_px = 9000;
+  f->m.file.width_px = f->m.file.height_px = 9000;
   f->m.foils = calloc(1, sizeof *f->m.foils);
   f->m.foils[0] = synthetic_foil(&f->m.design, &f->m.nominal);
   fg_edge_fit_view view = {.foil = &f->m.foils[0], .measurement = &f->m};

@@ -37,10 +37,8 @@ static inline fg_lot made_lot(const fg_design *design, size_t foils, size_t bump
     record->foils = calloc(1, sizeof *record->foils);
     record->foil_count = 1;
     fg_foil *foil = &record->foils[0];
-    *foil = (fg_foil){.number = 1,
-                      .thickness_mm = design->thickness_mm,
-                      .u_thickness_mm = 1e-5,
-                      .bump_count = bumps};
+    *foil = (fg_foil){
+        .number = 1, .thickness = {.mm = design->thickness_mm, .u_mm = 1e-5}, .bump_count = bumps};
     foil->overall.radius_mm = design->overall_radius_mm;
     foil->bumps = calloc(bumps, sizeof *foil->bumps);
     for (size_t k = 0; k < bumps; k++)

@@ -240,12 +240,12 @@ static inline void odd_measure(const odd_input *in, fg_measurement *measurements
   for (size_t i = 0; i < in->scans; i++) {
     const odd_scan *scan = &in->scan[i];
     fg_measurement *m = &measurements[i];
-    *m = (fg_measurement){.width_px = 9000,
-                          .height_px = 9000,
-                          .bit_depth = 8,
+    *m = (fg_measurement){.file = {.width_px = 9000,
+                                   .height_px = 9000,
+                                   .bit_depth = 8,
+                                   .dpi_file = {4800, 4800},
+                                   .format = "PNG"},
                           .dpi = {4800, 4800},
-                          .dpi_file = {4800, 4800},
-                          .format = "PNG",
                           .design = in->design};
     fg_context ctx = {0};
     if (in->design.kind != FG_FOIL_DISCS) (void)fg_design_derive(&ctx, &in->design, &m->nominal);

@@ -152,7 +152,7 @@ static inline void synthetic_station(fg_foil *foil, size_t index, double psi, do
   station->s_mm = *s_mm;
   station->normal = (fg_point){-tangent_y / length, tangent_x / length};
   double residual_um = 0.4 * sin(3.1 * *s_mm) + 0.15 * sin(71.0 * *s_mm);
-  double half = foil->thickness_mm / 2, mid = residual_um * 1e-3;
+  double half = foil->thickness.mm / 2, mid = residual_um * 1e-3;
   double x = foil->overall.centre_mm.x + rho * c, y = foil->overall.centre_mm.y + rho * s;
   station->left =
       (fg_point){x - station->normal.x * (half + mid), y - station->normal.y * (half + mid)};
@@ -170,11 +170,8 @@ static inline fg_foil synthetic_foil(const fg_design *design, const fg_nominal *
   fg_foil foil = {.number = 1,
                   .orientation = FG_CLOCKWISE,
                   .rotation_deg = -90,
-                  .thickness_mm = 0.1003,
-                  .u_thickness_mm = 0.00004,
-                  .noise_um = 0.13,
-                  .correlation_mm = 0.011,
-                  .edge_model_um = 0.05,
+                  .thickness = {.mm = 0.1003, .u_mm = 0.00004},
+                  .noise = {.sd_um = 0.13, .correlation_mm = 0.011, .edge_model_um = 0.05},
                   .bump_count = SYNTHETIC_BUMPS};
   foil.overall = (fg_overall){.centre_mm = {22.0, 24.0},
                               .u_centre_mm = {0.0004, 0.0006},
@@ -216,11 +213,11 @@ static inline fg_foil synthetic_foil(const fg_design *design, const fg_nominal *
 /* A measurement of one foil. Free with synthetic_free. */
 static inline fg_measurement synthetic_measurement(const fg_design *design) {
   fg_measurement measurement = {.scan = "foil, \"one\" <a&b>.png",
-                                .width_px = 8124,
-                                .height_px = 8040,
-                                .bit_depth = 8,
+                                .file = {.width_px = 8124,
+                                         .height_px = 8040,
+                                         .bit_depth = 8,
+                                         .dpi_file = {4799.9904, 4799.9904}},
                                 .dpi = {4800, 4800},
-                                .dpi_file = {4799.9904, 4799.9904},
                                 .design = *design,
                                 .light_on_dark = true,
                                 .foil_count = 1,

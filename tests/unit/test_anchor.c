@@ -97,7 +97,7 @@ static void assert_same(const fg_foil *a, const fg_foil *b) {
   assert_int_equal(a->bump_count, b->bump_count);
   assert_true(a->bump_count > 0 && !(a->flags & FG_FOIL_NOT_MEASURED));
   assert_int_equal(a->flags, b->flags);
-  assert_memory_equal(&a->thickness_mm, &b->thickness_mm, sizeof a->thickness_mm);
+  assert_memory_equal(&a->thickness.mm, &b->thickness.mm, sizeof a->thickness.mm);
   fg_overall p = a->overall, q = b->overall;
   p.centre_mm = q.centre_mm = (fg_point){0, 0};
   assert_memory_equal(&p, &q, sizeof p);

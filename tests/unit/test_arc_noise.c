@@ -101,7 +101,7 @@ static void covariance_is_monte_carlo(double rho, double low, double high) {
     arcs_strip a;
     fg_noise_model noise;
     draw_arcs(&a, 2e-4, rho, &seed);
-    fg_noise_estimate(&a.line, a.arcs, ARCS, 0, &noise);
+    fg_noise_estimate(&a.line, a.arcs, ARCS, FG_NOISE_OF_LINE, &noise);
     for (size_t i = 0; i < ARCS; i++) {
       fg_arc_covariance(&a.line, &noise, &a.arcs[i]);
       double error = a.arcs[i].circle.radius - radius_mm, variance = a.arcs[i].covariance[2][2];

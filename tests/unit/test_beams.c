@@ -385,7 +385,7 @@ static void another_size_is_no_foil_of_the_design(void **state) {
   fg_foil_free(&foil);
 }
 
-static void a_foil_without_beams_is_no_crime(void **state) {
+static void a_foil_without_beams_is_flagged(void **state) {
   (void)state;
   const fg_design design = design_of_beams();
   fg_context ctx = {0};
@@ -409,7 +409,7 @@ int main(void) {
       cmocka_unit_test(one_of_parallel_beams_that_leans_is_bent),
       cmocka_unit_test(beams_of_a_ring_run_clockwise),
       cmocka_unit_test(another_size_is_no_foil_of_the_design),
-      cmocka_unit_test(a_foil_without_beams_is_no_crime),
+      cmocka_unit_test(a_foil_without_beams_is_flagged),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "foilgauge/report.h"
+#include "support/random.h"
 #include "support/test.h"
 
 enum { PADS = 3, BUMPS = 9, PLACES = PADS * BUMPS };
@@ -32,11 +33,6 @@ static void bores_of_the_thesis(void **state) {
   assert_near(result.min_at_deg, 120, 1e-12);
   assert_near(result.circularity_mm, 0.105, 1e-12);
   assert_near(result.centred_min_mm, -0.040, 1e-12); /* opposite crowns: no place is better */
-}
-
-static double uniform(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return (double)(*seed >> 11) * 0x1p-53;
 }
 
 static void angles(double angle[PLACES]) {
@@ -86,7 +82,7 @@ static void centred_is_the_best_of_all(void **state) {
   for (int trial = 0; trial < 60; trial++) {
     size_t count = trial % 3 ? PLACES : 20;
     for (size_t i = 0; i < PLACES; i++) {
-      double drawn = uniform(&seed);
+      double drawn = random_uniform(&seed);
       clearance[i] = 0.065 + 0.04 * (trial % 4 == 3 ? round(3 * drawn) / 3 : drawn);
     }
     fg_bearing_clearance result;
@@ -150,9 +146,9 @@ static void uncertainties_are_propagated(void **state) {
   angles(angle);
   for (int trial = 0; trial < 5; trial++) {
     for (size_t i = 0; i < PLACES; i++) {
-      clearance[i] = 0.065 + 0.04 * uniform(&seed);
+      clearance[i] = 0.065 + 0.04 * random_uniform(&seed);
       shared[i] = 1e-3;
-      own[i] = 1e-3 * (0.5 + uniform(&seed));
+      own[i] = 1e-3 * (0.5 + random_uniform(&seed));
       pad[i] = i / BUMPS;
     }
     const fg_bearing_uncertainty uncertainty = {shared, own, pad};

@@ -34,7 +34,7 @@ static void means_that_agree_have_no_spread(void **state) {
   assert_true(isnan(fg_between_reach(&between, 1, 0, 0.95)));
 }
 
-static void nothing_within_is_the_spread_of_the_means(void **state) {
+static void without_scatter_within_groups_only_their_means_scatter(void **state) {
   (void)state;
   const fg_group_mean groups[] = {{3, 0}, {5, 0}, {7, 0}}, same[] = {{3, 0}, {3, 0}};
   assert_near(fg_between_groups(groups, 3, 0.95).sd, 2, 1e-9);
@@ -89,7 +89,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equal_variances_have_a_closed_form),
       cmocka_unit_test(means_that_agree_have_no_spread),
-      cmocka_unit_test(nothing_within_is_the_spread_of_the_means),
+      cmocka_unit_test(without_scatter_within_groups_only_their_means_scatter),
       cmocka_unit_test(intervals_keep_their_promise),
       cmocka_unit_test(holm_adjusts_step_by_step),
   };

@@ -131,7 +131,7 @@ static void noise_is_not_confirmed_by_cross_fitting(void **state) {
 }
 
 /* Before, nothing but the geometry is fitted: the error is the rms of all rows. */
-static void before_is_the_rms(void **state) {
+static void error_before_is_the_rms_of_all_rows(void **state) {
   (void)state;
   fixture f;
   open_foil(&f, 1, 3, RIPPLE_UM);
@@ -184,7 +184,7 @@ int main(void) {
       cmocka_unit_test(taking_a_subset_leaves_the_full_set_unchanged),
       cmocka_unit_test(a_true_effect_survives_cross_fitting),
       cmocka_unit_test(noise_is_not_confirmed_by_cross_fitting),
-      cmocka_unit_test(before_is_the_rms),
+      cmocka_unit_test(error_before_is_the_rms_of_all_rows),
       cmocka_unit_test(a_curve_is_judged_by_stretches),
       cmocka_unit_test(one_bump_cannot_be_left_out),
   };

@@ -229,12 +229,12 @@ static void a_thickness_that_was_not_measured_is_the_design_s(void **state) {
   (void)state;
   fg_design design;
   fg_design_default(&design);
-  fg_foil foil = {.thickness_mm = NAN, .u_thickness_mm = NAN};
+  fg_foil foil = {.thickness = {.mm = NAN, .u_mm = NAN}};
   fg_thickness strip = fg_foil_thickness(&design, &foil);
   assert_near(strip.mm, 0.1, 0);
   assert_near(strip.u_mm, 0, 0);
   assert_false(fg_thickness_differs(&design, &strip));
-  foil = (fg_foil){.thickness_mm = 0.105, .u_thickness_mm = 0.0024};
+  foil = (fg_foil){.thickness = {.mm = 0.105, .u_mm = 0.0024}};
   strip = fg_foil_thickness(&design, &foil);
   assert_true(fg_thickness_differs(&design, &strip));
   strip.u_mm = 0.0026;

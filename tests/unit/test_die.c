@@ -11,7 +11,7 @@
 #include "support/random.h"
 #include "support/test.h"
 
-static void styles_are_told(void **state) {
+static void styles_of_numbers_are_told_apart(void **state) {
   static const struct {
     const char *text;
     char separator; /* 0: refused */
@@ -180,8 +180,10 @@ static void u_covers_the_form_error(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(styles_are_told),         cmocka_unit_test(numbers_are_numbers),
-      cmocka_unit_test(headers_say_units),       cmocka_unit_test(halves_are_named),
+      cmocka_unit_test(styles_of_numbers_are_told_apart),
+      cmocka_unit_test(numbers_are_numbers),
+      cmocka_unit_test(headers_say_units),
+      cmocka_unit_test(halves_are_named),
       cmocka_unit_test(u_covers_the_form_error),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,7 +13,7 @@ enum { LANDS = SYNTHETIC_BUMPS + 1 };
 static fg_measurement measured(size_t foils) {
   fg_measurement m = {.design = synthetic_design(), .dpi = {4800, 4800}};
   m.nominal = synthetic_nominal(&m.design);
-  m.width_px = m.height_px = 9000;
+  m.file.width_px = m.file.height_px = 9000;
   m.foils = calloc(foils, sizeof *m.foils);
   m.foil_count = foils;
   for (size_t f = 0; f < foils; f++)

@@ -136,7 +136,7 @@ static void uncertain_runs_weigh_less(void **state) {
   (void)state;
   make_table(&table, 50, 80);
   analyse(&table, &e);
-  assert_non_null(e.weight);
+  assert_non_null(e.measurement.weight);
   assert_true(fabs(e.regression.coefficient[1].estimate - 2) < 0.05);
   assert_true(e.regression.residual_sd < 0.1);
   fg_experiment_free(&e);
@@ -161,7 +161,7 @@ static void dof_is_that_of_the_precise_runs(void **state) {
   assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", y, RUNS));
   assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "u", u, RUNS));
   analyse(&table, &e);
-  assert_non_null(e.weight);
+  assert_non_null(e.measurement.weight);
   assert_true(fabs(e.effect[1].dof - (PRECISE - 2)) < 0.01);
   assert_true(e.effect[1].low < 2 && 2 < e.effect[1].high);
   fg_experiment_free(&e);
@@ -229,7 +229,7 @@ static void measurement_is_propagated(void **state) {
   (void)state;
   make_table(&table, 0, 0.02);
   analyse(&table, &e);
-  assert_null(e.weight);
+  assert_null(e.measurement.weight);
   assert_true(fabs(e.effect[1].u_measurement - 0.02 / sqrt(RUNS)) < 1e-12);
   fg_experiment_free(&e);
   fg_table_free(&table);

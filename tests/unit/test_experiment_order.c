@@ -8,20 +8,12 @@
 
 #include "foilgauge/distribution.h"
 #include "foilgauge/experiment.h"
+#include "support/random.h"
 #include "support/test.h"
 
 enum { RUNS = 24 };
 
 static uint64_t state_of_noise;
-
-static double uniform(void) {
-  state_of_noise = state_of_noise * 6364136223846793005u + 1442695040888963407u;
-  return ((double)(state_of_noise >> 11) + 0.5) / 9007199254740992.0;
-}
-
-static double normal(void) {
-  return sqrt(-2 * log(uniform())) * cos(6.28318530717958648 * uniform());
-}
 
 /* Three levels of T and two of D in random order; the response is y. */
 typedef struct made {
@@ -31,9 +23,9 @@ typedef struct made {
 static void make_noise(made *m) {
   for (int i = 0; i < RUNS; i++) {
     m->run[i] = i + 1;
-    m->t[i] = floor(3 * uniform());
+    m->t[i] = floor(3 * random_uniform(&state_of_noise));
     m->d[i] = i % 4 < 2 ? -1 : 1;
-    m->y[i] = 5 + 2 * m->t[i] - m->d[i] + 0.3 * normal();
+    m->y[i] = 5 + 2 * m->t[i] - m->d[i] + 0.3 * random_gaussian(&state_of_noise);
   }
 }
 
@@ -55,7 +47,7 @@ static void analyse(const made *m, const char *formula, const fg_experiment_opti
 /* Rows in another order than the runs: the run column says which came first. */
 static void shuffle(made *m) {
   for (int i = RUNS - 1; i > 0; i--) {
-    int k = (int)(uniform() * (i + 1));
+    int k = (int)(random_uniform(&state_of_noise) * (i + 1));
     double *columns[] = {m->run, m->t, m->d, m->y};
     for (int c = 0; c < 4; c++) {
       double held = columns[c][i];
@@ -111,7 +103,7 @@ static void slow_down(made *m) {
   for (int i = 0; i < RUNS; i++) {
     m->t[i] = i / 8;
     m->d[i] = i % 8 < 4 ? -1 : 1;
-    m->y[i] = 0.3 * normal();
+    m->y[i] = 0.3 * random_gaussian(&state_of_noise);
   }
 }
 
@@ -153,7 +145,7 @@ static int times_told(int what, double size) {
     double walk = 0;
     make_noise(&m);
     for (int r = 0; r < RUNS; r++) {
-      walk = 0.8 * walk + 0.3 * normal();
+      walk = 0.8 * walk + 0.3 * random_gaussian(&state_of_noise);
       m.y[r] += what == 0 ? size * r / (RUNS - 1) : what == 1 ? size * walk : 0;
     }
     if (what == 2) m.y[9] -= size;
@@ -175,7 +167,7 @@ static void real_order_effects_are_found(void **state) {
 
 /* An effect that was taken out costs degrees of freedom of the residual, and of the error of
  * repeated runs where it differs between them. */
-static void removed_effects_cost_their_degrees_of_freedom(void **state) {
+static void subtracted_effects_cost_their_dof(void **state) {
   (void)state;
   made m;
   fg_experiment plain, paid, between;
@@ -186,17 +178,18 @@ static void removed_effects_cost_their_degrees_of_freedom(void **state) {
     within[i] = 0.1 * m.run[i];
     same[i] = 0.1 * m.t[i];
   }
-  const fg_experiment_taken taken[] = {
+  const fg_subtracted_effect effects[] = {
       {.id = "a", .words = "a", .parameters = 2, .applied = true},
       {.id = "b", .words = "b", .parameters = 1, .applied = false},
   };
-  fg_experiment_options options = {.taken = taken, .takens = 2, .taken_out = within};
+  fg_experiment_options options = {
+      .subtracted = effects, .subtracted_count = 2, .subtracted_sum = within};
   analyse(&m, "T + D", NULL, &plain);
   analyse(&m, "T + D", &options, &paid);
-  options.taken_out = same;
+  options.subtracted_sum = same;
   analyse(&m, "T + D", &options, &between);
   const fg_regression *a = &plain.regression, *b = &paid.regression, *c = &between.regression;
-  assert_int_equal(paid.dof_taken, 2);
+  assert_int_equal(paid.subtracted.dof, 2);
   assert_int_equal(a->residual_dof, RUNS - 3);
   assert_int_equal(b->residual_dof, RUNS - 5);
   assert_true(fabs(b->residual_sd - sqrt(a->residual_ss / (RUNS - 5))) < 1e-12);
@@ -228,14 +221,15 @@ static void strata_pay_their_own(void **state) {
     constant[i] = i / 4;
     varying[i] = i;
   }
-  const fg_experiment_taken taken[] = {{.id = "a", .words = "a", .parameters = 1, .applied = true}};
+  const fg_subtracted_effect effects[] = {
+      {.id = "a", .words = "a", .parameters = 1, .applied = true}};
   fg_experiment_options options = {.whole_plot = "run"};
   analyse(&m, "T + D", &options, &plain);
-  options.taken = taken;
-  options.takens = 1;
-  options.taken_out = constant;
+  options.subtracted = effects;
+  options.subtracted_count = 1;
+  options.subtracted_sum = constant;
   analyse(&m, "T + D", &options, &whole);
-  options.taken_out = varying;
+  options.subtracted_sum = varying;
   analyse(&m, "T + D", &options, &runs);
   assert_false(plain.has_order);
   assert_int_equal(whole.split_plot.plot_dof, plain.split_plot.plot_dof - 1);
@@ -259,9 +253,13 @@ static void no_residual_dof_is_reported(void **state) {
   fg_experiment e;
   state_of_noise = 41;
   make_noise(&m);
-  const fg_experiment_taken taken[] = {{.id = "a", .words = "a", .parameters = 3, .applied = true}};
-  const fg_experiment_options options = {
-      .response = "y", .formula = "T + D", .taken = taken, .takens = 1, .taken_out = m.run};
+  const fg_subtracted_effect effects[] = {
+      {.id = "a", .words = "a", .parameters = 3, .applied = true}};
+  const fg_experiment_options options = {.response = "y",
+                                         .formula = "T + D",
+                                         .subtracted = effects,
+                                         .subtracted_count = 1,
+                                         .subtracted_sum = m.run};
   assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "T", m.t, 6));
   assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "D", m.d, 6));
   assert_ok(&ctx, fg_table_add_numbers(&ctx, &table, "y", m.y, 6));
@@ -275,7 +273,7 @@ int main(void) {
       cmocka_unit_test(tests_are_the_known_ones),
       cmocka_unit_test(noise_is_told_at_the_level),
       cmocka_unit_test(real_order_effects_are_found),
-      cmocka_unit_test(removed_effects_cost_their_degrees_of_freedom),
+      cmocka_unit_test(subtracted_effects_cost_their_dof),
       cmocka_unit_test(strata_pay_their_own),
       cmocka_unit_test(no_residual_dof_is_reported),
   };

@@ -43,7 +43,7 @@ static void factor_of_a_line_is_exact(void **state) {
   fg_experiment e;
   (void)state;
   analyse("a,y\n-1,1\n-1,1.2\n-1,0.9\n-1,1.1\n1,3\n1,3.3\n1,2.9\n1,3.1\n", "a", FG_GOAL_LOWEST, &e);
-  const fg_prediction *p = &e.optimum.prediction;
+  const fg_prediction *p = &e.best.optimum.prediction;
   assert_true(p->dof == LINE - 2);
   assert_true(fabs(probability_of_line(p->coverage_factor, p->dof) - 0.95) < 0.002);
   assert_true(fabs(p->high - p->mean - p->coverage_factor * p->standard_error) < 1e-9);
@@ -68,7 +68,7 @@ static void intervals_hold_at_what_the_runs_chose(fg_goal goal, double student_a
     fg_experiment e;
     write_flat(&seed, text, sizeof text);
     analyse(text, "a*b + a^2 + b^2", goal, &e);
-    const fg_prediction *p = &e.optimum.prediction;
+    const fg_prediction *p = &e.best.optimum.prediction;
     double half = fg_distribution_t_quantile(0.975, p->dof) * p->standard_error;
     double one = 10 + random_gaussian(&seed);
     student += fabs(p->mean - 10) <= half;
@@ -102,7 +102,7 @@ static void best_level_has_a_simultaneous_interval(void **state) {
   (void)state;
   analyse("a,die,y\n-1,A,1\n1,A,3.1\n-1,B,2\n1,B,4.2\n-1,A,1.1\n1,A,3\n-1,B,2.2\n1,B,4.1\n",
           "a + die", FG_GOAL_LOWEST, &e);
-  const fg_prediction *p = &e.optimum.prediction;
+  const fg_prediction *p = &e.best.optimum.prediction;
   double one = fg_distribution_t_quantile(0.975, p->dof),
          all = sqrt(3 * fg_distribution_f_quantile(0.95, 3, p->dof));
   assert_true(p->coverage_factor > one && p->coverage_factor < all);

@@ -73,7 +73,7 @@ static void any_number_of_bumps(void **state) {
     measured m =
         check_foil(counts[i], "", "\"blur_px\":1.2", counts[i] == 1 ? FG_FOIL_FEW_LANDS : 0);
     check_bumps(&m, 0, false, 0);
-    assert_near(m.result.foils[0].thickness_mm, 0.1, 0.0001);
+    assert_near(m.result.foils[0].thickness.mm, 0.1, 0.0001);
     measured_free(&m);
   }
 }
@@ -173,7 +173,7 @@ static void thick_and_thin_strips(void **state) {
     measured m = measure_render(json, &design);
     assert_ok(NULL, m.status);
     check_bumps(&m, 0, false, 0);
-    assert_near(m.result.foils[0].thickness_mm, thicknesses[i], 0.0001);
+    assert_near(m.result.foils[0].thickness.mm, thicknesses[i], 0.0001);
     measured_free(&m);
   }
 }

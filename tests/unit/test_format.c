@@ -21,8 +21,7 @@ static void every_format_is_complete(void **state) {
   assert_true(count > 0);
   for (size_t i = 0; i < count; i++) {
     const fg_format *one = formats[i];
-    fg_measurement measurement;
-    assert_true(one->name[0] && strlen(one->name) < sizeof measurement.format);
+    assert_true(one->name[0]);
     assert_true(one->matches && one->has_colour && one->open && one->start);
     assert_true(one->read_row && one->finish && one->close);
     assert_non_null(one->endings[0]);

@@ -182,8 +182,8 @@ static void plane_strain_is_near(void **state) {
 
 /* ---- the strip ---- */
 
-static void form(const fg_design *design, const fg_forming_material *m, double temperature_C,
-                 double hours, const fg_forming_options *options, fg_forming *forming) {
+static void run_forming(const fg_design *design, const fg_forming_material *m, double temperature_C,
+                        double hours, const fg_forming_options *options, fg_forming *forming) {
   fg_context ctx = {0};
   fg_forming_schedule hold = {0};
   if (hours > 0) assert_ok(&ctx, fg_forming_schedule_hold(&ctx, temperature_C, hours, &hold));
@@ -202,7 +202,7 @@ static fg_design sinusoidal_design(void) {
 }
 
 /* A strip that has crept all it can has the die's circles, whatever line of it the design is of. */
-static void die_comes_back(void **state) {
+static void a_fully_crept_strip_has_the_circles_of_its_die(void **state) {
   (void)state;
   fg_forming_material m;
   fg_forming_material_default(&m);
@@ -216,7 +216,7 @@ static void die_comes_back(void **state) {
   designs[3] = sinusoidal_design();
   for (int i = 0; i < 4; i++) {
     fg_forming f;
-    form(&designs[i], &m, 700, 5, NULL, &f);
+    run_forming(&designs[i], &m, 700, 5, NULL, &f);
     assert_true(f.fitted && f.bump_count == 9);
     assert_true(fabs(f.turn_die_deg - 40.0 / 3) < 1e-9 && fabs(f.turn_deg - 40.0 / 3) < 1e-9);
     assert_true(fabs(f.overall_radius_mm - 20.73) < 1e-9);
@@ -240,7 +240,7 @@ static void linear_law_scales(void **state) {
   design.thickness_mm = 0.02; /* elastic everywhere */
   m.value[FG_FORMING_CREEP_RATE] = 1e-3;
   m.value[FG_FORMING_CREEP_EXPONENT] = 1;
-  form(&design, &m, 550, 1, NULL, &f);
+  run_forming(&design, &m, 550, 1, NULL, &f);
   double share = f.mean_share;
   assert_true(share > 0.1 && share < 0.9);
   assert_true(fabs(f.turn_deg - (1 - share) * 40.0 / 3) < 1e-9);
@@ -260,7 +260,7 @@ static void overall_radius_is_that_of_the_lands(void **state) {
   fg_forming f;
   fg_design_default(&design);
   fg_forming_material_default(&m);
-  form(&design, &m, 0, 0, NULL, &f);
+  run_forming(&design, &m, 0, 0, NULL, &f);
   assert_true(f.fitted && !f.yields_back);
   assert_true(relative(f.foil.overall.radius_mm, f.overall_radius_mm) < 1e-3);
   assert_true(relative(f.bumps[4].fitted.radius_mm, f.bumps[4].curvature_radius_mm) < 1e-5);
@@ -281,10 +281,10 @@ static void sinusoidal_die_lowers_both(void **state) {
     const fg_forming_options *options;
   } others[] = {{&arcs, NULL}, {&classical, &sine}};
   fg_forming first;
-  form(&classical, &m, 0, 0, NULL, &first);
+  run_forming(&classical, &m, 0, 0, NULL, &first);
   for (size_t i = 0; i < 2; i++) {
     fg_forming f;
-    form(others[i].design, &m, 0, 0, others[i].options, &f);
+    run_forming(others[i].design, &m, 0, 0, others[i].options, &f);
     assert_true(f.mean_stress_mpa[FG_FORMING_BENT] < 0.99 * first.mean_stress_mpa[FG_FORMING_BENT]);
     assert_true(fabs(f.springback_error_pct) < 0.5 * fabs(first.springback_error_pct));
     fg_forming_free(&f);
@@ -302,7 +302,7 @@ static void hotter_and_longer_is_less(void **state) {
   double share = 2, radius = INFINITY, strip = -INFINITY;
   for (size_t i = 0; i < 6; i++) {
     fg_forming f;
-    form(&design, &m, settings[i][0], settings[i][1], NULL, &f);
+    run_forming(&design, &m, settings[i][0], settings[i][1], NULL, &f);
     assert_true(f.mean_share < share);
     assert_true(f.bumps[0].fitted.radius_error_pct < radius);
     assert_true(f.strip_springback_error_pct > strip);
@@ -351,7 +351,7 @@ static void fit(const double *response, fg_forming_response of, fg_forming_fit *
 }
 
 /* Runs of known constants, of the whole foil and of its lands. */
-static void constants_come_back(void **state) {
+static void constants_of_made_runs_are_found(void **state) {
   (void)state;
   fg_design design;
   fg_forming_material m;
@@ -365,7 +365,7 @@ static void constants_come_back(void **state) {
     double response[13];
     for (size_t i = 0; i < 13; i++) {
       fg_forming f;
-      form(&design, &m, runs[i][0], runs[i][1], &options, &f);
+      run_forming(&design, &m, runs[i][0], runs[i][1], &options, &f);
       response[i] = of ? f.springback_error_pct : f.strip_springback_error_pct;
       fg_forming_free(&f);
     }
@@ -406,12 +406,12 @@ int main(void) {
       cmocka_unit_test(relaxing_bar),
       cmocka_unit_test(ramps_converge),
       cmocka_unit_test(plane_strain_is_near),
-      cmocka_unit_test(die_comes_back),
+      cmocka_unit_test(a_fully_crept_strip_has_the_circles_of_its_die),
       cmocka_unit_test(linear_law_scales),
       cmocka_unit_test(overall_radius_is_that_of_the_lands),
       cmocka_unit_test(sinusoidal_die_lowers_both),
       cmocka_unit_test(hotter_and_longer_is_less),
-      cmocka_unit_test(constants_come_back),
+      cmocka_unit_test(constants_of_made_runs_are_found),
       cmocka_unit_test(thirteen_runs),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

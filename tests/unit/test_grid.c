@@ -75,7 +75,7 @@ static void measure_board(const drawn_board *board, fg_measurement *m) {
   fg_tiles tiles = {0};
   memset(m, 0, sizeof *m);
   m->dpi[0] = m->dpi[1] = 25.4 * 100; /* 100 px per mm */
-  m->width_px = m->height_px = SIDE;
+  m->file.width_px = m->file.height_px = SIDE;
   fg_design_default(&m->design);
   assert_int_equal(fg_design_become(NULL, FG_FOIL_GRID, &m->design), FG_OK);
   m->design.grid.marks = board->kind;

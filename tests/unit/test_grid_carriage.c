@@ -45,32 +45,32 @@ static double find_carriage_of(const int turns[SCANS], double carriage_mm, doubl
   return um;
 }
 
-static void its_size_is_found(void **state) {
+static void scatter_of_a_carriage_is_found_with_its_size(void **state) {
   static const int turns[SCANS] = {0, 0, 0};
   (void)state;
   /* 120 degrees of freedom: 3 sd of a standard deviation are 19 % */
   assert_near(find_carriage_of(turns, 0.004, 0), 4, 0.19 * 4);
 }
 
-static void two_of_three_scans_share_a_pose(void **state) {
+static void two_scans_of_one_pose_tell_the_scatter(void **state) {
   static const int turns[SCANS] = {1, 0, 1};
   (void)state;
   assert_near(find_carriage_of(turns, 0.004, 0), 4, 0.27 * 4);
 }
 
-static void what_every_scan_repeats_is_none_of_it(void **state) {
+static void errors_that_every_scan_repeats_are_no_scatter(void **state) {
   static const int turns[SCANS] = {0, 0, 0};
   (void)state;
   assert_near(find_carriage_of(turns, 0.004, 0.05), 4, 0.19 * 4);
 }
 
-static void noise_of_marks_is_none_of_it(void **state) {
+static void noise_of_marks_is_no_scatter_of_the_carriage(void **state) {
   static const int turns[SCANS] = {0, 0, 0};
   (void)state;
   assert_true(find_carriage_of(turns, 0, 0) < 0.04);
 }
 
-static void without_a_repeated_pose_it_is_not_told(void **state) {
+static void without_a_repeated_pose_the_scatter_is_unknown(void **state) {
   static const int turns[SCANS] = {0, 1, 2};
   (void)state;
   assert_true(isnan(find_carriage_of(turns, 0.004, 0)));
@@ -78,11 +78,11 @@ static void without_a_repeated_pose_it_is_not_told(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(its_size_is_found),
-      cmocka_unit_test(two_of_three_scans_share_a_pose),
-      cmocka_unit_test(what_every_scan_repeats_is_none_of_it),
-      cmocka_unit_test(noise_of_marks_is_none_of_it),
-      cmocka_unit_test(without_a_repeated_pose_it_is_not_told),
+      cmocka_unit_test(scatter_of_a_carriage_is_found_with_its_size),
+      cmocka_unit_test(two_scans_of_one_pose_tell_the_scatter),
+      cmocka_unit_test(errors_that_every_scan_repeats_are_no_scatter),
+      cmocka_unit_test(noise_of_marks_is_no_scatter_of_the_carriage),
+      cmocka_unit_test(without_a_repeated_pose_the_scatter_is_unknown),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

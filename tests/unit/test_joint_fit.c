@@ -19,7 +19,7 @@ static fg_edge_fit open_points(fg_measurement *m) {
   fg_edge_fit edge_fit;
   *m = (fg_measurement){.design = synthetic_design(), .dpi = {4800, 4800}, .foil_count = 1};
   m->nominal = synthetic_nominal(&m->design);
-  m->width_px = m->height_px = 9000;
+  m->file.width_px = m->file.height_px = 9000;
   m->foils = calloc(1, sizeof *m->foils);
   m->foils[0] = synthetic_foil(&m->design, &m->nominal);
   fg_edge_fit_view view = {.foil = &m->foils[0], .measurement = m};

@@ -40,7 +40,7 @@ static void a_gauge_removes_the_level_s_uncertainty_but_not_a_shadow_s(void **st
   assert_near(fg_level_uncertainty(&unknown, &picture, 0), 0.25, 0.001);
 }
 
-static void a_finding_makes_it_wider(void **state) {
+static void no_finding_narrows_the_level_s_uncertainty(void **state) {
   (void)state;
   const fg_design linear = design_of(FG_TONE_LINEAR);
   for (unsigned bit = 1; bit <= FG_PICTURE_UNKNOWN_PROFILE; bit <<= 1) {
@@ -88,23 +88,23 @@ static void the_thickness_moves_by_both_edges(void **state) {
   double level = fg_level_uncertainty(&design, &foil.strip.picture, 0);
   double expected = level * sqrt(2 * M_PI) * 26 / 1000;
   fg_foil_find_thickness(&design, &foil);
-  assert_near(foil.u_thickness_tone_mm, expected, 1e-12);
-  assert_near(foil.u_thickness_mm, hypot(expected, 1e-4), 1e-12);
+  assert_near(foil.thickness.u_tone_mm, expected, 1e-12);
+  assert_near(foil.thickness.u_mm, hypot(expected, 1e-4), 1e-12);
   assert_near(fg_foil_edge_u_mm(&design, &foil), expected / 2, 1e-12);
   assert_int_equal(foil.flags, 0);
   design.thickness_measured_mm = 0.098;
   design.u_thickness_measured_mm = 0.0005;
   fg_foil_find_thickness(&design, &foil);
-  assert_near(foil.thickness_mm, 0.098, 0);
-  assert_near(foil.u_thickness_mm, 0.0005, 0);
-  assert_near(foil.thickness_scan_mm, 0.1, 0);
+  assert_near(foil.thickness.mm, 0.098, 0);
+  assert_near(foil.thickness.u_mm, 0.0005, 0);
+  assert_near(foil.thickness.scan_mm, 0.1, 0);
   assert_int_equal(foil.flags, 0);
   design.thickness_measured_mm = 0.1 - 2.1 * hypot(expected, 0.0005);
   fg_foil_find_thickness(&design, &foil);
   assert_int_equal(foil.flags, FG_FOIL_THICKNESS_CONTRADICTS);
   double off = 2.1 * hypot(expected, 0.0005); /* which of both is wrong is not known */
-  assert_near(foil.u_thickness_mm, hypot(off, 0.0005), 1e-4);
-  assert_true(foil.u_thickness_mm > off);
+  assert_near(foil.thickness.u_mm, hypot(off, 0.0005), 1e-4);
+  assert_true(foil.thickness.u_mm > off);
 }
 
 /* Beyond U and beyond a fifth of the design's. */
@@ -132,7 +132,7 @@ static void another_thickness_is_flagged(void **state) {
 }
 
 /* The uncertainty of the level of a disc's edge is in its radius. */
-static void a_disc_holds_it(void **state) {
+static void the_radius_of_a_disc_has_the_level_s_uncertainty(void **state) {
   (void)state;
   const fg_design design = design_of(FG_TONE_UNKNOWN);
   fg_disc disc = {.blur_um = 10, .edge_u_mm = 0.001, .picture = fg_picture_unknown()};
@@ -145,11 +145,11 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_unknown_tone_curve_is_eight_percent),
       cmocka_unit_test(a_gauge_removes_the_level_s_uncertainty_but_not_a_shadow_s),
-      cmocka_unit_test(a_finding_makes_it_wider),
+      cmocka_unit_test(no_finding_narrows_the_level_s_uncertainty),
       cmocka_unit_test(clipped_blur_adds_to_u),
       cmocka_unit_test(the_thickness_moves_by_both_edges),
       cmocka_unit_test(another_thickness_is_flagged),
-      cmocka_unit_test(a_disc_holds_it),
+      cmocka_unit_test(the_radius_of_a_disc_has_the_level_s_uncertainty),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

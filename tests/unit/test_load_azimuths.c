@@ -6,24 +6,16 @@
 #include <stdlib.h>
 
 #include "load_test/analysis.h"
+#include "support/random.h"
 #include "support/test.h"
 
-enum { AZIMUTHS_MAX = 12, SEEDS = 1000 };
+enum { AZIMUTHS_MAX = 12, SEEDS = 4000 };
 static const double u_mm = 0.001;
 
 /* A bearing's clearance: mean, orders 2 and 4, and where its order 2 is smallest. */
 typedef struct bearing {
   double second_mm, fourth_mm, smallest_at_deg, fourth_at_deg;
 } bearing;
-
-static double deviate(uint64_t *state) {
-  double u[2];
-  for (int i = 0; i < 2; i++) {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    u[i] = ((double)(*state >> 11) + 0.5) / 9007199254740992.0;
-  }
-  return sqrt(-2 * log(u[0])) * cos(2 * M_PI * u[1]);
-}
 
 static double clearance_at(const bearing *b, double deg) {
   return 0.18 - b->second_mm * cos(2 * (deg - b->smallest_at_deg) * M_PI / 180) -
@@ -40,7 +32,7 @@ static fg_load_bearing sum(const bearing *b, const double *azimuths, size_t coun
                        .bearings = &found,
                        .bearing_count = 1};
   for (size_t i = 0; i < count; i++) {
-    double c = clearance_at(b, azimuths[i]) + (state ? u_mm * deviate(state) : 0);
+    double c = clearance_at(b, azimuths[i]) + (state ? u_mm * random_gaussian(state) : 0);
     directions[i] = (fg_load_direction){.azimuth_deg = azimuths[i], .clearance = {c, u_mm, u_mm}};
   }
   fg_load_sum_bearing(&test, 0, &found);
@@ -114,7 +106,8 @@ static void expanded_uncertainty_holds_the_truth(void **state) {
       inside += fabs(remainder(found.min_at_deg - truth, 180)) <= 2 * found.u_min_at_deg;
     }
     assert_in_range(named, SEEDS * 97 / 100, SEEDS);
-    assert_in_range(inside, named * 93 / 100, named * 98 / 100);
+    /* 93.4 % of 20,000 draws of the weakest order (rows[3]), 95 to 97 % of the others. */
+    assert_in_range(inside, named * 92 / 100, named * 98 / 100);
   }
 }
 

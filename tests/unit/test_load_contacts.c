@@ -6,6 +6,7 @@
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 #include "load_test/noise.h"
+#include "support/random.h"
 #include "support/test.h"
 
 enum { SAMPLES = 600 };
@@ -42,12 +43,7 @@ static size_t holes(made *m) {
   return count;
 }
 
-static double uniform(uint64_t *state) {
-  *state = *state * 6364136223846793005u + 1442695040888963407u;
-  return ((double)(*state >> 11) + 0.5) / 9007199254740992.0;
-}
-
-static void even_and_random_samples_have_none(void **state) {
+static void even_and_random_samples_have_no_holes(void **state) {
   (void)state;
   made *even = make(0.0002), *sine = make(0.0002), *random = make(0), *weights = make(0.0002);
   uint64_t seed = 3;
@@ -55,7 +51,7 @@ static void even_and_random_samples_have_none(void **state) {
   for (size_t i = 0; i < 500; i++) {
     add(even, 0.001 * (double)i, 0);
     add(sine, -0.19 * cos(M_PI * ((double)i + 0.5) / 500), 0);
-    add(random, x -= 0.001 * log(uniform(&seed)), 0);
+    add(random, x -= 0.001 * log(random_uniform(&seed)), 0);
     /* A rotor that rests under 25 weights: every rest is one place. */
     add(weights, 0.01 * (double)(i / 20) + 0.00002 * (double)(i % 20), 0);
   }
@@ -154,7 +150,7 @@ static void contradictions(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(even_and_random_samples_have_none),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(even_and_random_samples_have_no_holes),
                                      cmocka_unit_test(jumps_are_found_and_not_reached_over),
                                      cmocka_unit_test(crossing_in_a_hole),
                                      cmocka_unit_test(contradictions)};

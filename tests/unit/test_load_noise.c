@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "load_test/noise.h"
+#include "support/random.h"
 #include "support/test.h"
 
 enum { CYCLES = 5, EACH = 600, SAMPLES = CYCLES * EACH };
@@ -18,16 +19,6 @@ typedef struct record {
   fg_load_strokes strokes;
 } record;
 
-/* Normal deviates from a fixed sequence. */
-static double deviate(uint64_t *state) {
-  double u[2];
-  for (int i = 0; i < 2; i++) {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    u[i] = ((double)(*state >> 11) + 0.5) / 9007199254740992.0;
-  }
-  return sqrt(-2 * log(u[0])) * cos(2 * M_PI * u[1]);
-}
-
 /* A gap of 0.16 mm and a spring that hardens behind it; friction of 1 N. */
 static double force_at(double x, double sense) {
   double d = fmax(0, fabs(x) - 0.08);
@@ -38,8 +29,8 @@ static void fill(record *r, double noise_n, double noise_mm, double step_mm) {
   uint64_t state = 7;
   for (size_t i = 0; i < SAMPLES; i++) {
     double phase = 2 * M_PI * (double)i / EACH, x = amplitude_mm * sin(phase);
-    double f = force_at(x, cos(phase) >= 0 ? 1 : -1) + noise_n * deviate(&state);
-    x += noise_mm * deviate(&state);
+    double f = force_at(x, cos(phase) >= 0 ? 1 : -1) + noise_n * random_gaussian(&state);
+    x += noise_mm * random_gaussian(&state);
     if (step_mm > 0) x = step_mm * round(x / step_mm);
     r->sample[i] = (fg_load_sample){.x_mm = x, .force_n = f};
   }

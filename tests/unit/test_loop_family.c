@@ -11,18 +11,18 @@
 #include <cmocka.h>
 #include <gsl/gsl_cdf.h>
 
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 #include "table_loop/family.h"
 
 /* Candidates of each kind, and how much they share with a common pattern. */
 static const size_t members[FG_LOOP_KINDS] = {4, 6, 40, 30, 3, 0, 200};
 
 static void draw_maxima(uint64_t *seed, double shared, double max[FG_LOOP_KINDS]) {
-  double common = fg_engine_random_normal(seed), own = sqrt(1 - shared * shared);
+  double common = fg_splitmix_normal(seed), own = sqrt(1 - shared * shared);
   for (size_t k = 0; k < FG_LOOP_KINDS; k++) {
     max[k] = -INFINITY;
     for (size_t c = 0; c < members[k]; c++)
-      max[k] = fmax(max[k], shared * common + own * fg_engine_random_normal(seed));
+      max[k] = fmax(max[k], shared * common + own * fg_splitmix_normal(seed));
   }
 }
 
@@ -73,7 +73,7 @@ static void p_values_are_uniform(void **state) {
 }
 
 /* Far beyond the draws: four candidates with the share of recorded columns. */
-static void the_tail_goes_on(void **state) {
+static void p_values_hold_beyond_the_draws(void **state) {
   fg_context ctx = {0};
   fg_engine_family family = {0};
   (void)state;
@@ -104,7 +104,7 @@ static void shares_follow_the_kind(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(p_values_are_uniform),
-      cmocka_unit_test(the_tail_goes_on),
+      cmocka_unit_test(p_values_hold_beyond_the_draws),
       cmocka_unit_test(shares_follow_the_kind),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -192,7 +192,7 @@ static void bumps_and_lands_that_are_missing(void **state) {
   }
 }
 
-static void edges_with_faults(void **state) {
+static void edges_with_faults_are_searched(void **state) {
   (void)state;
   for (unsigned fault = 1; fault <= ODD_SPIKES; fault *= 2) {
     char what[64];
@@ -208,7 +208,7 @@ static void edges_with_faults(void **state) {
   }
 }
 
-static void noise_from_nothing_to_much(void **state) {
+static void any_noise_is_searched(void **state) {
   static const double noise[] = {0, 1e-6, 1e-3, 5, 50};
   (void)state;
   for (size_t i = 0; i < sizeof noise / sizeof *noise; i += test_step(2)) {
@@ -322,7 +322,7 @@ static void plates(void **state) {
     }
 }
 
-static void discs_with_faults(void **state) {
+static void discs_with_faults_are_searched(void **state) {
   (void)state;
   for (unsigned fault = 1; fault <= ODD_SPIKES; fault *= 2) {
     char what[64];
@@ -410,13 +410,13 @@ int main(void) {
       cmocka_unit_test(foils_of_one_to_forty_bumps),
       cmocka_unit_test(a_plain_foil_is_clean),
       cmocka_unit_test(bumps_and_lands_that_are_missing),
-      cmocka_unit_test(edges_with_faults),
-      cmocka_unit_test(noise_from_nothing_to_much),
+      cmocka_unit_test(edges_with_faults_are_searched),
+      cmocka_unit_test(any_noise_is_searched),
       cmocka_unit_test(few_rows),
       cmocka_unit_test(scans_of_one_foil_and_of_several),
       cmocka_unit_test(scanners_far_out_of_line),
       cmocka_unit_test(plates),
-      cmocka_unit_test(discs_with_faults),
+      cmocka_unit_test(discs_with_faults_are_searched),
       cmocka_unit_test(foils_and_discs_do_not_mix),
       cmocka_unit_test(drawn_from_bytes),
       cmocka_unit_test(reports_keep_to_their_schema),

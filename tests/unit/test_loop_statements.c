@@ -43,7 +43,8 @@ static fg_scan_loop *run_loop(const char *spec_json, fg_foil_kind kind) {
   fg_render_free(spec);
   fg_design_default(&design);
   assert_ok(&ctx, fg_design_become(&ctx, kind, &design));
-  if (fg_scan_loop_run(&ctx, paths, (bool[]){false}, 1, &design, &options, &loop) != FG_OK)
+  const fg_scan_loop_scans scans = {paths, (bool[]){false}, 1};
+  if (fg_scan_loop_run(&ctx, &scans, &design, &options, &loop) != FG_OK)
     fail_msg("%s", ctx.message);
   unlink(path);
   return loop;

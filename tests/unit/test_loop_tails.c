@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "table_loop/engine_random.h"
+#include "core/splitmix.h"
 #include "table_loop/tails.h"
 
 enum { ROWS = 126 };
@@ -17,9 +17,9 @@ static const double claimed_from = 5.99;
 
 /* Student's t of that many dof; 0: normal. */
 static double draw(int dof, uint64_t *seed) {
-  double normal = fg_engine_random_normal(seed), squares = 0;
+  double normal = fg_splitmix_normal(seed), squares = 0;
   for (int k = 0; k < dof; k++)
-    squares += pow(fg_engine_random_normal(seed), 2);
+    squares += pow(fg_splitmix_normal(seed), 2);
   return dof ? normal / sqrt(squares / dof) : normal;
 }
 

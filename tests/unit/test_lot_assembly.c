@@ -136,7 +136,7 @@ static void foils_are_left_out(void **state) {
   made_lot_free(&lot);
 }
 
-static void few_foils_and_none_asked(void **state) {
+static void too_few_foils_assemble_no_bearing(void **state) {
   (void)state;
   static const double radius[] = {3.40};
   fg_design design;
@@ -176,7 +176,7 @@ int main(void) {
       cmocka_unit_test(a_good_lot_assembles),
       cmocka_unit_test(the_largest_change_wins),
       cmocka_unit_test(foils_are_left_out),
-      cmocka_unit_test(few_foils_and_none_asked),
+      cmocka_unit_test(too_few_foils_assemble_no_bearing),
       cmocka_unit_test(an_open_bearing_asks_for_the_axis),
   };
   return cmocka_run_group_tests_name("assembly of a lot", tests, NULL, NULL);

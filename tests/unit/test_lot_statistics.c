@@ -110,8 +110,8 @@ static void strips_are_as_thick_as_they_are(void **state) {
   fg_design_default(&design);
   fg_lot lot = sound_lot(&design), other = made_lot(&design, FOILS, BUMPS, "", NULL);
   for (size_t i = 0; i < FOILS; i++) {
-    other.records[i].foils[0].thickness_mm = 0.105;
-    other.records[i].foils[0].u_thickness_mm = 0.0002;
+    other.records[i].foils[0].thickness.mm = 0.105;
+    other.records[i].foils[0].thickness.u_mm = 0.0002;
     for (size_t k = 0; k < BUMPS; k++) {
       const fg_bump *bump = &lot.records[i].foils[0].bumps[k];
       made_bump(&other, i, k, bump->radius_mm, bump->bump_angle_deg);

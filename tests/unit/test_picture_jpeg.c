@@ -29,7 +29,7 @@ static void quality_is_found(void **unused) {
   }
 }
 
-static void plain_scans_have_none(void **unused) {
+static void scans_without_jpeg_have_no_block_quality(void **unused) {
   (void)unused;
   static const char *const scanners[] = {
       PLAIN, PLAIN ",\"noise_correlation\":0.6", PLAIN ",\"levels\":16",
@@ -45,7 +45,7 @@ static void plain_scans_have_none(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(quality_is_found),
-      cmocka_unit_test(plain_scans_have_none),
+      cmocka_unit_test(scans_without_jpeg_have_no_block_quality),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -89,7 +89,7 @@ static void pieces_that_are_shifted_are_found(void **unused) {
   assert_jumps(PLAIN ",\"stitches\":[{\"y_mm\":2.9,\"rows\":3,\"shift_um\":10}]", 1, -3, 0.4);
 }
 
-static void plain_and_rough_discs_have_none(void **unused) {
+static void plain_and_rough_discs_have_no_row_jumps(void **unused) {
   (void)unused;
   static const char *const scanners[] = {
       PLAIN, ROUGH, PLAIN ",\"bits\":16",
@@ -98,7 +98,7 @@ static void plain_and_rough_discs_have_none(void **unused) {
     assert_none("", scanners[i]);
 }
 
-static void lobed_discs_have_none(void **unused) {
+static void lobed_discs_have_no_row_jumps(void **unused) {
   (void)unused;
   static const int lobes[] = {2, 3, 4, 5, 7, 9, 12};
   static const double sizes_um[] = {3, 12};
@@ -113,7 +113,7 @@ static void lobed_discs_have_none(void **unused) {
 }
 
 /* A hole that cuts into the edge: at a limb, at the side, on top. */
-static void dented_discs_have_none(void **unused) {
+static void dented_discs_have_no_row_jumps(void **unused) {
   (void)unused;
   static const double places[] = {0, 20, 45, 90, 130, 200, 300};
   static const double depths_mm[] = {0.01, 0.03};
@@ -128,7 +128,7 @@ static void dented_discs_have_none(void **unused) {
 }
 
 /* Chips of the sensor that are shifted along y, or turned: the edge jumps from column to column. */
-static void seams_of_chips_have_none(void **unused) {
+static void seams_of_chips_are_no_row_jumps(void **unused) {
   (void)unused;
   static const char *const chips[] = {
       "{\"id\":\"scan.chip_tilt\",\"amplitude_um\":12,\"x_mm\":1.7,\"pitch_mm\":9}",
@@ -146,10 +146,10 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rows_lost_and_doubled_are_found),
       cmocka_unit_test(pieces_that_are_shifted_are_found),
-      cmocka_unit_test(plain_and_rough_discs_have_none),
-      cmocka_unit_test(lobed_discs_have_none),
-      cmocka_unit_test(dented_discs_have_none),
-      cmocka_unit_test(seams_of_chips_have_none),
+      cmocka_unit_test(plain_and_rough_discs_have_no_row_jumps),
+      cmocka_unit_test(lobed_discs_have_no_row_jumps),
+      cmocka_unit_test(dented_discs_have_no_row_jumps),
+      cmocka_unit_test(seams_of_chips_are_no_row_jumps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ static void every_format_is_complete(void **state) {
   }
 }
 
-static void a_name_is_there_once(void **state) {
+static void names_of_quantities_are_unique(void **state) {
   (void)state;
   for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++) {
     size_t count;
@@ -220,7 +220,7 @@ static void reports_hold_every_row_of_discs(void **state) {
   fg_nominal nominal = {0};
   fg_disc disc = synthetic_disc(1, 1.5);
   fg_measurement measurement = {
-      .dpi = {1200, 1200}, .bit_depth = 8, .discs = &disc, .disc_count = 1};
+      .file = {.bit_depth = 8}, .dpi = {1200, 1200}, .discs = &disc, .disc_count = 1};
   memset(measurement.sha256, 'a', 64);
   fg_report_scan scan = {"discs.png", &measurement, NULL, NULL};
   fg_report report = {&design, &nominal, &scan, 1, NULL};
@@ -406,7 +406,7 @@ static void tables_tell_results_from_causes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_format_is_complete),
-      cmocka_unit_test(a_name_is_there_once),
+      cmocka_unit_test(names_of_quantities_are_unique),
       cmocka_unit_test(every_use_has_room),
       cmocka_unit_test(a_calibration_has_room_for_every_row),
       cmocka_unit_test(reports_hold_every_row),

@@ -76,7 +76,7 @@ static void amplitude_is_light(void **state) {
     }
 }
 
-static void gap_keeps_it_from_the_edge(void **state) {
+static void a_gap_keeps_a_shadow_from_the_edge(void **state) {
   (void)state;
   picture p =
       draw_disc(DISC, 100, 100, "\"shadow\":{\"amplitude\":-0.4,\"length_px\":15,\"gap_px\":16}");
@@ -126,7 +126,7 @@ static void strips_of_any_height_give_one_picture(void **state) {
   drop(&other);
 }
 
-static void truth_records_it(void **state) {
+static void truth_records_the_shadow(void **state) {
   (void)state;
   fg_context ctx = {0};
   char *json = NULL;
@@ -144,11 +144,11 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shadow_is_within_its_sector),
       cmocka_unit_test(amplitude_is_light),
-      cmocka_unit_test(gap_keeps_it_from_the_edge),
+      cmocka_unit_test(a_gap_keeps_a_shadow_from_the_edge),
       cmocka_unit_test(hole_faces_its_middle),
       cmocka_unit_test(strips_have_it_beside_their_wall),
       cmocka_unit_test(strips_of_any_height_give_one_picture),
-      cmocka_unit_test(truth_records_it),
+      cmocka_unit_test(truth_records_the_shadow),
   };
   return cmocka_run_group_tests_name("render shadow", tests, NULL, NULL);
 }

@@ -62,7 +62,7 @@ static void unknown_is_null_and_flags_are_words(void **state) {
   foil->flags = FG_FOIL_NO_LIP | FG_FOIL_GAP;
   foil->bumps[2].radius_mm = foil->bumps[2].u_radius_mm = NAN;
   foil->bumps[2].flags = FG_BUMP_NOT_FITTED;
-  all->measurement.dpi_file[0] = INFINITY;
+  all->measurement.file.dpi_file[0] = INFINITY;
   cJSON *json = json_of(&all->report);
   const cJSON *flags = member(first_foil(json), "flags");
   assert_int_equal(cJSON_GetArraySize(flags), 2);

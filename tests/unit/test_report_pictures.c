@@ -32,8 +32,8 @@ static void write_ramp(char path[]) {
 }
 
 static fg_measurement measurement_of(const char *path) {
-  fg_measurement measurement = {
-      .width_px = WIDTH, .height_px = HEIGHT, .bit_depth = 8, .dpi = {600, 600}};
+  fg_measurement measurement = {.file = {.width_px = WIDTH, .height_px = HEIGHT, .bit_depth = 8},
+                                .dpi = {600, 600}};
   snprintf(measurement.scan, sizeof measurement.scan, "%s", path);
   return measurement;
 }
@@ -72,7 +72,7 @@ static void a_scan_that_changed_is_refused(void **state) {
   fg_measurement measurement = measurement_of(path);
   const int64_t box[4] = {0, 0, WIDTH, HEIGHT};
   fg_picture picture;
-  measurement.height_px++;
+  measurement.file.height_px++;
   assert_status(&ctx, fg_picture_load(&ctx, &measurement, box, 100, 1e9, &picture), FG_ERR_DATA);
   assert_null(picture.gray);
   unlink(path);

@@ -64,13 +64,11 @@ static void discs_are_valid(void **state) {
   synthetic_tolerance(&design, "roundness_um", -INFINITY, 5);
   fg_nominal nominal = {0};
   fg_disc discs[2] = {synthetic_disc(1, 1.5), synthetic_disc(2, 2.75)};
-  fg_measurement measurement = {.width_px = 100,
-                                .height_px = 100,
-                                .bit_depth = 16,
-                                .dpi = {1200, 1200},
-                                .dpi_file = {NAN, NAN},
-                                .discs = discs,
-                                .disc_count = 2};
+  fg_measurement measurement = {
+      .file = {.width_px = 100, .height_px = 100, .bit_depth = 16, .dpi_file = {NAN, NAN}},
+      .dpi = {1200, 1200},
+      .discs = discs,
+      .disc_count = 2};
   memset(measurement.sha256, '0', 64);
   fg_report_scan scan = {"discs.png", &measurement, NULL, NULL};
   assert_valid(&(fg_report){&design, &nominal, &scan, 1, NULL});

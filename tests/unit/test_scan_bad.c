@@ -316,7 +316,7 @@ static void a_missing_file_is_an_io_error(void **state) {
   free(path);
 }
 
-static void harmless_extras_pass(void **state) {
+static void harmless_chunks_are_passed_over(void **state) {
   (void)state;
   bytes file = make_plain();
   insert_chunk(&file, find_chunk(&file, "IDAT"), "iCCP", "broken profile", 14);
@@ -336,7 +336,7 @@ static void nothing_is_printed(void **state) {
   char *log = save_bytes("", 0);
   int saved = dup(STDERR_FILENO), descriptor = open(log, O_WRONLY);
   dup2(descriptor, STDERR_FILENO);
-  harmless_extras_pass(NULL);
+  harmless_chunks_are_passed_over(NULL);
   contradictory_headers_are_refused(NULL);
   broken_resolution_asks_for_dpi(NULL);
   dup2(saved, STDERR_FILENO);
@@ -363,7 +363,7 @@ int main(void) {
       cmocka_unit_test(oversized_scans_are_refused_by_the_cap),
       cmocka_unit_test(huge_interlaced_scans_are_refused),
       cmocka_unit_test(a_missing_file_is_an_io_error),
-      cmocka_unit_test(harmless_extras_pass),
+      cmocka_unit_test(harmless_chunks_are_passed_over),
       cmocka_unit_test(nothing_is_printed),
   };
   return cmocka_run_group_tests_name("scan_bad", tests, NULL, NULL);

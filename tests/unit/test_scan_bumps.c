@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/splitmix.h"
 #include "scan_loop/bumps.h"
 #include "support/brief.h"
 #include "support/test.h"
-#include "table_loop/engine_random.h"
 
 enum { FOILS = 12, BUMPS = 9 };
 
@@ -41,11 +41,11 @@ static void make(const recipe *r, uint64_t seed, scans *s) {
     for (size_t b = 0; b < r->bumps; b++) {
       fg_bump *p = &s->bump[f][b];
       p->number = (int)b + 1;
-      p->radius_mm = 3.32 * (1.02 + r->scatter * fg_engine_random_normal(&seed)) *
+      p->radius_mm = 3.32 * (1.02 + r->scatter * fg_splitmix_normal(&seed)) *
                      (1 + r->decay * exp(-(double)b / (r->decay_bumps > 0 ? r->decay_bumps : 1)));
-      double arc = 1 + r->stretch + r->stretch_scatter * fg_engine_random_normal(&seed);
+      double arc = 1 + r->stretch + r->stretch_scatter * fg_splitmix_normal(&seed);
       p->bump_angle_deg = 63.15 * 3.32 / p->radius_mm * arc + r->edge_deg +
-                          0.3 * r->u_deg * fg_engine_random_normal(&seed);
+                          0.3 * r->u_deg * fg_splitmix_normal(&seed);
       bool apart = r->first && p->number >= r->first && !((p->number - r->first) % r->every);
       if (apart) p->bump_angle_deg += r->apart_deg;
       if (r->cycle_bumps > 0)

@@ -341,7 +341,7 @@ static void hostile_jpegs_are_refused(void **state) {
 }
 
 /* Of RGB the channel must be found, by a second reading. */
-static void a_pipe_will_do(void **state) {
+static void a_jpeg_is_read_from_a_pipe(void **state) {
   (void)state;
   kind k = plain;
   k.in = k.kept = JCS_RGB;
@@ -372,7 +372,7 @@ int main(void) {
       cmocka_unit_test(no_byte_breaks_it),
       cmocka_unit_test(unsupported_jpegs_are_named),
       cmocka_unit_test(hostile_jpegs_are_refused),
-      cmocka_unit_test(a_pipe_will_do),
+      cmocka_unit_test(a_jpeg_is_read_from_a_pipe),
   };
   return cmocka_run_group_tests_name("scan_jpeg", tests, NULL, NULL);
 }

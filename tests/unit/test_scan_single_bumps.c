@@ -4,21 +4,21 @@
  * of the edge's model may do is no deviation. */
 #include <math.h>
 
+#include "core/splitmix.h"
 #include "effect/midline.h"
 #include "scan_loop/bump_pattern.h"
 #include "scan_loop/state.h"
 #include "support/foil_rows.h"
 #include "support/test.h"
-#include "table_loop/engine_random.h"
 
 static fg_bump_values scatter(size_t n, double noise_dof, uint64_t *seed) {
   fg_bump_values at = {.n = n, .noise_dof = noise_dof};
   for (size_t k = 0; k < n; k++) {
     at.number[k] = (double)k + 1;
-    at.value[k] = fg_engine_random_normal(seed);
+    at.value[k] = fg_splitmix_normal(seed);
   }
   for (double f = 0; f < noise_dof; f++)
-    at.noise_square += pow(fg_engine_random_normal(seed), 2);
+    at.noise_square += pow(fg_splitmix_normal(seed), 2);
   return at;
 }
 

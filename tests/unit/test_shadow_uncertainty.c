@@ -120,7 +120,7 @@ static void heights_stay_sharp(void **state) {
 }
 
 /* Without one no bearing is in doubt. */
-static void plain_edges_have_none(void **state) {
+static void plain_edges_have_no_shadow(void **state) {
   (void)state;
   measured m = measure_case(COARSE, 20, false, "\"gamma\":1");
   const fg_picture_state *picture = &m.result.foils[0].strip.picture;
@@ -136,7 +136,7 @@ int main(void) {
       cmocka_unit_test(a_shadow_is_in_u),
       cmocka_unit_test(a_lit_wall_is_in_u),
       cmocka_unit_test(heights_stay_sharp),
-      cmocka_unit_test(plain_edges_have_none),
+      cmocka_unit_test(plain_edges_have_no_shadow),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -177,7 +177,7 @@ static void odd_plans_are_analysed_or_say_why(void **state) {
   for (size_t j = 0; j < e.regression.columns; j++)
     if (!e.regression.coefficient[j].aliased)
       assert_true(e.effect[j].standard_error > 0 && e.effect[j].dof > 1);
-  assert_true(e.optimum.prediction.standard_error > 0);
+  assert_true(e.best.optimum.prediction.standard_error > 0);
   fg_experiment_free(&e);
   free(text);
 }

@@ -9,8 +9,8 @@
 #include "support/station_fixture.h"
 #include "support/test.h"
 
-#define HOSTILE "<script>alert(1)</script>\"'&"
-#define FORM    "form=0123456789abcdef0123456789abcdef&"
+#define HOSTILE   "<script>alert(1)</script>\"'&"
+#define HTML_FORM "form=0123456789abcdef0123456789abcdef&"
 
 static station_fixture fixture;
 
@@ -192,19 +192,19 @@ static void test_hosts(void **state) {
   }
 }
 
-static void test_forms(void **state) {
+static void test_html_forms(void **state) {
   (void)state;
   static const struct {
     const char *fields, *origin, *site;
     int code;
   } rows[] = {
-      {FORM "foil=1&serial=A", NULL, NULL, 303},
-      {FORM "foil=1&serial=A", "http://127.0.0.1:8317", "same-origin", 303},
-      {FORM "foil=1&serial=B", "http://evil.example", NULL, 403},
-      {FORM "foil=1&serial=B", "null", NULL, 403},
-      {FORM "foil=1&serial=B", "http://127.0.0.1:8317.evil", NULL, 403},
-      {FORM "foil=1&serial=B", NULL, "cross-site", 403},
-      {FORM "foil=1&serial=B", NULL, "same-site", 403},
+      {HTML_FORM "foil=1&serial=A", NULL, NULL, 303},
+      {HTML_FORM "foil=1&serial=A", "http://127.0.0.1:8317", "same-origin", 303},
+      {HTML_FORM "foil=1&serial=B", "http://evil.example", NULL, 403},
+      {HTML_FORM "foil=1&serial=B", "null", NULL, 403},
+      {HTML_FORM "foil=1&serial=B", "http://127.0.0.1:8317.evil", NULL, 403},
+      {HTML_FORM "foil=1&serial=B", NULL, "cross-site", 403},
+      {HTML_FORM "foil=1&serial=B", NULL, "same-site", 403},
       {"foil=1&serial=B", NULL, NULL, 403},
       {"form=&foil=1&serial=B", NULL, NULL, 403},
       {"form=0123456789abcdef0123456789abcdee&foil=1&serial=B", NULL, NULL, 403},
@@ -219,7 +219,7 @@ static void test_forms(void **state) {
     if (ask(&request) != rows[i].code) fail_msg("row %zu: %d", i, told.code);
     assert_string_equal(serial_now(), "A");
   }
-  assert_int_equal(get("/correct", FORM "foil=1&serial=B"), 404);
+  assert_int_equal(get("/correct", HTML_FORM "foil=1&serial=B"), 404);
   assert_string_equal(serial_now(), "A");
 }
 
@@ -260,7 +260,8 @@ static void test_token(void **state) {
     assert_string_equal(told.location, rows[i].location);
     assert_int_equal(told.cookie[0] != '\0', rows[i].code == 303);
   }
-  fg_request request = make_request("/correct", FORM "token=a-token-of-a-station&foil=1&serial=C");
+  fg_request request =
+      make_request("/correct", HTML_FORM "token=a-token-of-a-station&foil=1&serial=C");
   request.post = true;
   assert_int_equal(ask(&request), 401); /* a form proves itself by the cookie alone */
   fixture.request.token = NULL;
@@ -299,9 +300,9 @@ static void test_nothing_else_is_served(void **state) {
 static void test_script_in_names(void **state) {
   (void)state;
   assert_int_equal(post("/correct",
-                        FORM "foil=1&serial=%3Cscript%3Ealert(1)%3C/script%3E%22%27%26"
-                             "&lot=%3Cscript%3Ex&die=%22+onfocus%3D%221&operator=%3Cscript%3E"
-                             "&by=%3Cscript%3Eby"),
+                        HTML_FORM "foil=1&serial=%3Cscript%3Ealert(1)%3C/script%3E%22%27%26"
+                                  "&lot=%3Cscript%3Ex&die=%22+onfocus%3D%221&operator=%3Cscript%3E"
+                                  "&by=%3Cscript%3Eby"),
                    303);
   assert_string_equal(serial_now(), HOSTILE);
   static const char *const asked[][2] = {{"/", ""},
@@ -341,12 +342,12 @@ static void test_corrections(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     in_row("rows[%zu]", i);
     char fields[200];
-    snprintf(fields, sizeof fields, FORM "%s", rows[i].fields);
+    snprintf(fields, sizeof fields, HTML_FORM "%s", rows[i].fields);
     if (post("/correct", fields) != rows[i].code) fail_msg("row %zu: %d", i, told.code);
     assert_string_equal(serial_now(), rows[i].serial);
     assert_string_equal(told.location, rows[i].location);
   }
-  char wide[400] = FORM "foil=1&serial=";
+  char wide[400] = HTML_FORM "foil=1&serial=";
   memset(wide + strlen(wide), 'x', 200);
   assert_int_equal(post("/correct", wide), 422);
   /* The record of a change holds who made it and the values before and after; a value that did not
@@ -403,7 +404,7 @@ static void test_searches(void **state) {
 /* Without a command, and of another program's record, the words say so. */
 static void test_answers_hold_without_scan_command_and_files(void **state) {
   (void)state;
-  assert_int_equal(post("/scan", FORM), 404);
+  assert_int_equal(post("/scan", HTML_FORM), 404);
   assert_int_equal(get("/foil", "id=1"), 200);
   assert_has(page, "cannot be read");
   assert_int_equal(get("/report", "foil=1"), 200);
@@ -417,7 +418,7 @@ int main(void) {
       cmocka_unit_test(test_fields_that_are_too_much),
       cmocka_unit_test(test_names_of_files),
       cmocka_unit_test(test_hosts),
-      cmocka_unit_test(test_forms),
+      cmocka_unit_test(test_html_forms),
       cmocka_unit_test(test_token),
       cmocka_unit_test(test_nothing_else_is_served),
       cmocka_unit_test(test_script_in_names),

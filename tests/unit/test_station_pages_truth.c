@@ -11,7 +11,7 @@
 #include "support/station_fixture.h"
 #include "support/test.h"
 
-#define FORM "form=0123456789abcdef0123456789abcdef&foil=1&"
+#define HTML_FORM "form=0123456789abcdef0123456789abcdef&foil=1&"
 
 static station_fixture fixture;
 static char *page;
@@ -78,21 +78,24 @@ static void expect_no_words(const char *words) {
 
 #define SHOWN "was_serial=S-1&was_lot=L1&was_die=D1&was_operator=&"
 
-static void test_a_stale_form_changes_what_was_changed_in_it(void **state) {
+static void test_a_stale_html_form_changes_what_was_changed_in_it(void **state) {
   (void)state;
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-1&lot=L1&die=D1&operator=Ada", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-1&lot=L1&die=D1&operator=Ada", true),
+                   303);
   expect_foil("S-1|L1|D1|Ada");
   /* Loaded before Ada was: its operator is empty. */
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-7&lot=L1&die=D1&operator=", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-7&lot=L1&die=D1&operator=", true),
+                   303);
   expect_foil("S-7|L1|D1|Ada");
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-7&lot=L2&die=D1&operator=Ada", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-7&lot=L2&die=D1&operator=Ada", true),
+                   303);
   expect_foil("S-7|L2|D1|Ada");
 }
 
 static void test_a_change_over_a_change_is_asked_about(void **state) {
   (void)state;
-  assert_int_equal(ask("/correct", FORM SHOWN "operator=Ada&by=Ada", true), 303);
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-9&operator=Bea", true), 409);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "operator=Ada&by=Ada", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-9&operator=Bea", true), 409);
   expect_foil("S-1|L1|D1|Ada");
   expect_words("Somebody else has changed the foil");
   expect_words("<b>operator</b></td><td class=\"text\" data-name=\"now\">Ada</td>"
@@ -102,28 +105,29 @@ static void test_a_change_over_a_change_is_asked_about(void **state) {
   expect_words("required data-focus value=\"S-9\"");
   /* The same by somebody who has seen it. */
   assert_int_equal(
-      ask("/correct", FORM "was_serial=S-1&was_operator=Ada&serial=S-9&operator=Bea", true), 303);
+      ask("/correct", HTML_FORM "was_serial=S-1&was_operator=Ada&serial=S-9&operator=Bea", true),
+      303);
   expect_foil("S-9|L1|D1|Bea");
   /* Two who want the same are of one mind. */
-  assert_int_equal(ask("/correct", FORM SHOWN "operator=Bea", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "operator=Bea", true), 303);
 }
 
 static void test_a_serial_of_another_foil_is_asked_about(void **state) {
   (void)state;
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-2&lot=L9&back=/", true), 409);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-2&lot=L9&back=/", true), 409);
   expect_foil("S-1|L1|D1|");
   expect_words("another foil has the serial number S-2");
   expect_words("<span class=\"tag pass\">PASS</span> <a href=\"/foil?id=2\">S-2</a>");
   expect_words("<button>Keep</button><button class=\"plain\" name=\"also\" value=\"S-2\">");
   expect_words("name=\"back\" value=\"/\"");
   /* Yes to another number is none to this one. */
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-2&also=S-3", true), 409);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-2&also=S-3", true), 409);
   expect_foil("S-1|L1|D1|");
-  assert_int_equal(ask("/correct", FORM SHOWN "serial=S-2&also=S-2&back=/", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM SHOWN "serial=S-2&also=S-2&back=/", true), 303);
   assert_string_equal(location, "/");
   expect_foil("S-2|L1|D1|");
   /* It has it now: nothing is asked of what stays. */
-  assert_int_equal(ask("/correct", FORM "was_serial=S-2&serial=S-2&lot=L9", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM "was_serial=S-2&serial=S-2&lot=L9", true), 303);
   expect_foil("S-2|L9|D1|");
   assert_int_equal(ask("/foil", "id=1", false), 200);
   expect_words("The serial also has <a href=\"/foil?id=2\">");
@@ -261,7 +265,7 @@ static void test_a_page_says_how_old_it_is(void **state) {
   assert_memory_equal(page, expected, strlen(expected));
   assert_int_equal(strlen(page), strlen(expected) - 2 + strlen("2026-01-01 00:00:00\n"));
   long long news = fg_station_news(&fixture.station);
-  assert_int_equal(ask("/correct", FORM "serial=S-8", true), 303);
+  assert_int_equal(ask("/correct", HTML_FORM "serial=S-8", true), 303);
   assert_int_equal(fg_station_news(&fixture.station), news + 1); /* other browsers show it, too */
 }
 
@@ -269,7 +273,7 @@ static void test_a_page_says_how_old_it_is(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      TEST(a_stale_form_changes_what_was_changed_in_it),
+      TEST(a_stale_html_form_changes_what_was_changed_in_it),
       TEST(a_change_over_a_change_is_asked_about),
       TEST(a_serial_of_another_foil_is_asked_about),
       TEST(a_scan_that_came_again_is_no_pass),

@@ -64,7 +64,7 @@ static void the_error_that_all_foils_share_is_in_the_interval(void **state) {
   assert_has_not(page, "nan");
 }
 
-static void too_few_foils_have_none(void **state) {
+static void too_few_foils_have_no_capability(void **state) {
   fixture *f = *state;
   assert_has(get(f, "/trends", "", 200), "0 foils with this quantity: a chart needs two");
   add_foils(f, 1, 20, "L1", 3.4);
@@ -411,7 +411,7 @@ int main(void) {
       TEST(a_stable_process_has_a_capability),
       TEST(a_signal_that_chance_explains_withholds_nothing),
       TEST(the_error_that_all_foils_share_is_in_the_interval),
-      TEST(too_few_foils_have_none),
+      TEST(too_few_foils_have_no_capability),
       TEST(a_shift_is_told_since_its_first_foil),
       TEST(another_setup_is_marked_where_it_began),
       TEST(capability_is_of_foils_of_one_recipe),

@@ -19,7 +19,7 @@ typedef struct causes {
 static fg_lot caused_lot(const fg_design *design, const causes *by) {
   fg_lot lot = made_lot(design, FOILS, BUMPS, "", NULL);
   for (size_t i = 0; i < FOILS; i++) {
-    lot.records[i].foils[0].thickness_mm = 0.1 * (1 + (i % 2 ? by->thickness : -by->thickness));
+    lot.records[i].foils[0].thickness.mm = 0.1 * (1 + (i % 2 ? by->thickness : -by->thickness));
     for (size_t k = 0; k < BUMPS; k++) {
       double radius = 3.4 * (1 + (k % 2 ? by->radius : -by->radius));
       double length = 3.32 * 63.15 * (1 + (k / 2 % 2 ? by->arc_length : -by->arc_length));
@@ -29,7 +29,7 @@ static fg_lot caused_lot(const fg_design *design, const causes *by) {
   return lot;
 }
 
-static void causes_come_back(void **state) {
+static void made_causes_are_found_with_their_sizes(void **state) {
   (void)state;
   const causes all[] = {
       {0.02, 1e-5, 1e-6}, {1e-5, 0.01, 1e-6}, {1e-5, 1e-5, 0.01}, {0.02, 0.01, 0.005}};
@@ -112,7 +112,7 @@ static void thickness_that_is_not_known_is_not_zero(void **state) {
     const causes by = {0.02, 0.01, 0};
     fg_lot lot = caused_lot(&design, &by);
     for (size_t i = 0; i < FOILS; i++)
-      if (!one || i) lot.records[i].foils[0].thickness_mm = NAN;
+      if (!one || i) lot.records[i].foils[0].thickness.mm = NAN;
     if (one) lot.manifest.items = 1;
     assert_ok(&test_context, fg_lot_analyse(&test_context, &lot, &analysis));
     const fg_lot_budget *budget = &analysis.stiffness.budget;
@@ -205,7 +205,7 @@ static void measurement_variance_agrees_with_drawn_circles(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(causes_come_back),
+      cmocka_unit_test(made_causes_are_found_with_their_sizes),
       cmocka_unit_test(shares_of_causes_that_go_together_are_the_whole),
       cmocka_unit_test(thickness_that_is_not_known_is_not_zero),
       cmocka_unit_test(one_bump_has_no_spread),

@@ -273,7 +273,7 @@ static void read_numbers(const char *text, fg_table *table) {
   free(csv);
 }
 
-static void summaries(void **state) {
+static void summaries_have_the_certified_digits(void **state) {
   static const char *const sets[] = {"Lottery", "Lew",     "Mavro",   "Michelso",
                                      "NumAcc1", "NumAcc2", "NumAcc3", "NumAcc4"};
   static const char *const difficulty[] = {"lower", "lower",   "lower",   "lower",
@@ -356,7 +356,7 @@ int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(regressions),
       cmocka_unit_test(anovas),
-      cmocka_unit_test(summaries),
+      cmocka_unit_test(summaries_have_the_certified_digits),
   };
   int failures = cmocka_run_group_tests_name("strd", tests, NULL, NULL);
   if (!failures && argc == 3 && strcmp(argv[1], "--report") == 0) write_report(argv[2]);

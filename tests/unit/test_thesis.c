@@ -13,15 +13,15 @@
 #include "support/test.h"
 
 static const char RESPONSE[] = "springback_error_pct";
-enum { MOST_TERMS = 8, QUANTITIES = 5 };
+enum { TERMS_MAX = 8, QUANTITIES = 5 };
 static const char *const QUANTITY[QUANTITIES] = {"coef", "relative_effect_pct", "se", "t", "p_pct"};
 
 /* A table of the thesis beside the same quantities computed. */
 typedef struct comparison {
   const char *title;
   size_t terms;
-  char name[MOST_TERMS][24];
-  double ours[MOST_TERMS][QUANTITIES], printed[MOST_TERMS][QUANTITIES]; /* NAN: not printed */
+  char name[TERMS_MAX][24];
+  double ours[TERMS_MAX][QUANTITIES], printed[TERMS_MAX][QUANTITIES]; /* NAN: not printed */
 } comparison;
 
 static comparison comparisons[4];

@@ -44,7 +44,7 @@ static void an_unknown_value_is_a_dash_with_its_reason(void **state) {
   assert_tile(&tile, "<div><dt>Gap</dt><dd>1</dd></div>\n");
 }
 
-static void a_count_has_the_sign_of_its_news(void **state) {
+static void a_bad_count_has_a_cross(void **state) {
   (void)state;
   assert_tile(&(fg_tile){"Foils", .value = 12, .look = FG_TILE_BAD, .small = ""},
               "<div class=\"bad\"><dt>Foils</dt><dd>✗ 12</dd></div>\n");
@@ -57,7 +57,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_value_has_decimals_unit_and_u),
       cmocka_unit_test(an_unknown_value_is_a_dash_with_its_reason),
-      cmocka_unit_test(a_count_has_the_sign_of_its_news),
+      cmocka_unit_test(a_bad_count_has_a_cross),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

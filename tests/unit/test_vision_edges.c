@@ -174,7 +174,7 @@ static void clipping_is_flagged(void **state) {
     const fg_foil *foil = &m.result.foils[0];
     if (!(foil->flags & FG_FOIL_CLIPPED)) fail_msg("%s: not flagged", scanners[i]);
     assert_near(compare_line(&m).mean_px, 0, 0.005);
-    assert_near(foil->thickness_mm * 1000, 100, 2);
+    assert_near(foil->thickness.mm * 1000, 100, 2);
     measured_free(&m);
   }
 }
@@ -213,7 +213,7 @@ static void edges_beside_a_wall_are_on_the_truth(void **state) {
     assert_near(e.mean_px, 0, 0.3);
     assert_near(e.worst_px, 0, 0.4);
     assert_near(foil->strip.gamma, 1.2, 0.1);
-    assert_near(foil->thickness_mm * 1000, 100, 2);
+    assert_near(foil->thickness.mm * 1000, 100, 2);
     measured_free(&m);
   }
 }

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "foilgauge/status.h"
+#include "foilgauge/lot.h"
 
 #define FG_NO_COLUMN ((size_t)-1)
 
@@ -14,10 +14,8 @@ typedef struct fg_manifest {
   size_t columns;
   char **cell; /* cells, items × columns, row by row; "" where a row has none */
   size_t items;
-  size_t doubles;         /* scans that were named again and left out */
-  char first_double[512]; /* the first of them, with the name under which it counts */
-  size_t empty;           /* empty folders whose name ends as a scan's does */
-  char first_empty[512];
+  fg_lot_finding named_again;          /* scans that were named again and left out */
+  fg_lot_finding empty_folders;        /* whose name ends as a scan's does */
   size_t name_capacity, cell_capacity; /* private */
 } fg_manifest;
 

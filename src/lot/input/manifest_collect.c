@@ -42,9 +42,9 @@ typedef struct search {
 
 static fg_status add_folder(const search *s, const char *folder, int depth);
 
-static void note_empty(fg_manifest *manifest, const char *path) {
-  if (manifest->empty++ == 0)
-    fg_text_clip(manifest->first_empty, sizeof manifest->first_empty, "%s", path);
+static void note_empty_folder(fg_manifest *manifest, const char *path) {
+  fg_lot_finding *folders = &manifest->empty_folders;
+  if (folders->count++ == 0) fg_text_clip(folders->first, sizeof folders->first, "%s", path);
 }
 
 static fg_status add_entry(const search *s, const char *folder, const char *name, int depth) {
@@ -56,7 +56,8 @@ static fg_status add_entry(const search *s, const char *folder, const char *name
   size_t before = s->manifest->items;
   if (there && S_ISDIR(info.st_mode) && !(s->leave_out && is_same_file(path, s->leave_out))) {
     status = add_folder(s, path, depth + 1);
-    if (s->manifest->items == before && fg_format_has_name(name)) note_empty(s->manifest, path);
+    if (s->manifest->items == before && fg_format_has_name(name))
+      note_empty_folder(s->manifest, path);
   } else if (fg_format_has_name(name) && !(there && S_ISDIR(info.st_mode)))
     status = fg_manifest_add_scan(s->ctx, s->manifest, "", path);
   free(path);
@@ -165,10 +166,11 @@ static fg_status check_double(fg_context *ctx, const fg_manifest *manifest, size
   return FG_OK;
 }
 
-static void drop_double(fg_manifest *manifest, size_t first, size_t second) {
-  if (manifest->doubles++ == 0)
-    fg_text_clip(manifest->first_double, sizeof manifest->first_double, "%s (%s)",
-                 fg_manifest_scan(manifest, second), fg_manifest_scan(manifest, first));
+static void drop_named_again(fg_manifest *manifest, size_t first, size_t second) {
+  fg_lot_finding *again = &manifest->named_again;
+  if (again->count++ == 0)
+    fg_text_clip(again->first, sizeof again->first, "%s (%s)", fg_manifest_scan(manifest, second),
+                 fg_manifest_scan(manifest, first));
   for (size_t i = 0; i < manifest->columns; i++) {
     free(manifest->cell[second * manifest->columns + i]);
     manifest->cell[second * manifest->columns + i] = NULL;
@@ -184,7 +186,7 @@ static fg_status drop_doubles(fg_context *ctx, fg_manifest *manifest, const fg_m
   }
   for (size_t i = 0; i < real->items; i++) {
     size_t first = fg_manifest_index_find(index, real, real->cell[i]);
-    if (first != i) drop_double(manifest, first, i);
+    if (first != i) drop_named_again(manifest, first, i);
   }
   for (size_t i = 0; i < real->items; i++) {
     if (!manifest->cell[i * columns]) continue;

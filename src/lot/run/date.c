@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/text.h"
+
 typedef struct span {
   double first, last; /* days; NaN: none yet */
 } span;
@@ -26,15 +28,15 @@ static bool date_by_manifest(const fg_manifest *manifest, span *days) {
   return isfinite(days->first);
 }
 
-size_t fg_lot_date_count_invalid(const fg_manifest *manifest, const char **first) {
-  size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN), wrong = 0;
-  *first = NULL;
+fg_lot_finding fg_lot_date_find_invalid(const fg_manifest *manifest) {
+  size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN);
+  fg_lot_finding invalid = {.count = 0};
   for (size_t i = 0; column != FG_NO_COLUMN && i < manifest->items; i++) {
     const char *cell = fg_manifest_cell(manifest, i, column);
     if (!*cell || isfinite(fg_date_days(cell))) continue;
-    if (wrong++ == 0) *first = cell;
+    if (invalid.count++ == 0) fg_text_clip(invalid.first, sizeof invalid.first, "%s", cell);
   }
-  return wrong;
+  return invalid;
 }
 
 static bool date_by_scans(const fg_lot *lot, span *days) {

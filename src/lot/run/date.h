@@ -24,8 +24,7 @@ void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date);
 /* Returns a scan's date: the cell of that column, else the day of the scan's file. */
 const char *fg_lot_date_of(const fg_lot *lot, size_t item);
 
-/* Returns the number of cells of that column that are no date; *first is the first of them, or
- * NULL. */
-size_t fg_lot_date_count_invalid(const fg_manifest *manifest, const char **first);
+/* Finds cells of that column that are no date. */
+fg_lot_finding fg_lot_date_find_invalid(const fg_manifest *manifest);
 
 #endif

@@ -33,8 +33,8 @@ void fg_lot_free(fg_lot *lot);
 /* Marks repeats: of scans with the same bytes the first counts, and the others become scans that
  * were not measured, with that reason. fg_lot_load calls it. */
 fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot);
-/* Returns the number of repeated scans; *first is the first of them, or NULL. */
-size_t fg_lot_count_repeats(const fg_lot *lot, const fg_record **first);
+/* Finds repeated scans; `first` has the reason that its record states. */
+fg_lot_finding fg_lot_find_repeats(const fg_lot *lot);
 
 /* Removes the report of an earlier run: it must not lie beside other results. */
 fg_status fg_lot_remove_report(fg_context *ctx, const char *folder);

@@ -19,7 +19,8 @@
 #include "quantity/quantity_rows.h"
 #include "report/flag_names.h"
 
-/* Highest number of a foil or of a part. No scan holds so many, and arrays by number stay small. */
+/* Highest number of a foil or of a part. More than any scan holds, and arrays by number stay small.
+ */
 enum { NUMBER_MAX = 10000 };
 
 static void write_value_list(fg_json *json, fg_quantity_owner owner, const void *object) {

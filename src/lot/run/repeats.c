@@ -51,12 +51,13 @@ fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot) {
   return status;
 }
 
-size_t fg_lot_count_repeats(const fg_lot *lot, const fg_record **first) {
-  size_t count = 0;
-  *first = NULL;
+fg_lot_finding fg_lot_find_repeats(const fg_lot *lot) {
+  fg_lot_finding repeats = {.count = 0};
   for (size_t i = 0; i < lot->manifest.items; i++) {
-    if (!lot->records[i].repeat_of) continue;
-    if (!count++) *first = &lot->records[i];
+    const fg_record *record = &lot->records[i];
+    if (!record->repeat_of) continue;
+    if (repeats.count++ == 0)
+      fg_text_clip(repeats.first, sizeof repeats.first, "%s", record->error);
   }
-  return count;
+  return repeats;
 }

@@ -184,10 +184,8 @@ static fg_status analyse_records(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY(list_lot_foils(ctx, analysis));
   FG_TRY(find_scans_of_foils(ctx, analysis));
   count_parts(analysis);
-  const fg_record *repeat;
-  const char *no_date;
-  analysis->repeated_scans = fg_lot_count_repeats(analysis->lot, &repeat);
-  analysis->invalid_dates = fg_lot_date_count_invalid(&analysis->lot->manifest, &no_date);
+  analysis->repeated = fg_lot_find_repeats(analysis->lot);
+  analysis->invalid_dates = fg_lot_date_find_invalid(&analysis->lot->manifest);
   fg_lot_date_find(analysis->lot, &analysis->date);
   FG_TRY(decide_foils(ctx, analysis));
   choose_listed_foils(analysis);

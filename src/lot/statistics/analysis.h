@@ -289,12 +289,12 @@ typedef struct fg_lot_analysis {
   fg_quantity_owner parts; /* kind of the foils' parts */
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
-  size_t scanned_again;  /* foils with `again` */
-  size_t repeated_scans; /* with the bytes of an earlier one; among those that failed */
+  size_t scanned_again;    /* foils with `again` */
+  fg_lot_finding repeated; /* scans with the bytes of an earlier one; among those that failed */
   fg_lot_date date;
-  size_t invalid_dates; /* cells of the manifest's column that are no date */
-  size_t part_count;    /* parts of measured foils */
-  size_t left_out;      /* parts left out of statistics, as crushed bumps and torn beams */
+  fg_lot_finding invalid_dates; /* cells of the manifest's column that are no date */
+  size_t part_count;            /* parts of measured foils */
+  size_t left_out;              /* parts left out of statistics, as crushed bumps and torn beams */
   size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
   fg_report_outcome outcome;                        /* of all foils, scans and bearings */
   const fg_lot_foil *worst[FG_LOT_WORST];

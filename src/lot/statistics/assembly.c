@@ -8,10 +8,10 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/splitmix.h"
 #include "foilgauge/density.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/report.h"
-#include "table_loop/engine_random.h"
 
 const double fg_assembly_probability[FG_ASSEMBLY_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
@@ -48,14 +48,14 @@ void fg_assembly_interval(double count, double of, double confidence, double *lo
 /* Gives every purpose and draw a random stream of its own. */
 static uint64_t seed_stream(uint64_t seed, uint64_t purpose, uint64_t draw) {
   uint64_t state = seed ^ purpose * 0xd1342543de82ef95u;
-  state = fg_engine_random_next(&state) ^ draw;
-  return fg_engine_random_next(&state);
+  state = fg_splitmix_next(&state) ^ draw;
+  return fg_splitmix_next(&state);
 }
 
 enum { FOR_BEARING = 1, FOR_SORTED, FOR_DESIGN, FOR_SET, FOR_SET_BEARING };
 
 static size_t draw_below(uint64_t *state, size_t count) {
-  size_t drawn = (size_t)(fg_engine_random_uniform(state) * (double)count);
+  size_t drawn = (size_t)(fg_splitmix_uniform(state) * (double)count);
   return drawn < count ? drawn : count - 1;
 }
 
@@ -328,7 +328,7 @@ fg_status fg_assembly_draw_design(fg_context *ctx, double clearance_mm, double d
     uint64_t state = seed_stream(plan->seed, FOR_DESIGN, i);
     fg_bearing_clearance bearing;
     for (size_t k = 0; k < count_places(&b); k++)
-      b.clearance_mm[k] = clearance_mm + deviation_mm * (2 * fg_engine_random_uniform(&state) - 1);
+      b.clearance_mm[k] = clearance_mm + deviation_mm * (2 * fg_splitmix_uniform(&state) - 1);
     status = fg_bearing_assess(ctx, b.angle_deg, b.clearance_mm, count_places(&b), &bearing);
     if (status == FG_OK) count_bearing(plan, &bearing, counts, result);
   }

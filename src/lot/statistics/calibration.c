@@ -37,9 +37,9 @@ typedef struct readings {
 static fg_foil thicken(const fg_foil *foil) {
   fg_foil thick = *foil;
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_FOIL, &thick, &foil->calibrated);
-  double u = isfinite(thick.u_thickness_mm) ? thick.u_thickness_mm : 0;
-  thick.thickness_mm += u;
-  if (thick.u_thickness_scan_mm > 0) thick.thickness_scan_mm += thick.u_thickness_scan_mm;
+  double u = isfinite(thick.thickness.u_mm) ? thick.thickness.u_mm : 0;
+  thick.thickness.mm += u;
+  if (thick.thickness.u_scan_mm > 0) thick.thickness.scan_mm += thick.thickness.u_scan_mm;
   return thick;
 }
 

@@ -12,10 +12,10 @@ void fg_lot_analyse_thickness(fg_lot_analysis *analysis) {
   fg_lot_thickness *result = &analysis->thickness;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
-    if (!fg_foil_is_measured(foil) || !isfinite(foil->thickness_mm)) continue;
+    if (!fg_foil_is_measured(foil) || !isfinite(foil->thickness.mm)) continue;
     result->foils++;
-    result->mean.mm += foil->thickness_mm;
-    result->mean.u_mm += foil->u_thickness_mm;
+    result->mean.mm += foil->thickness.mm;
+    result->mean.u_mm += foil->thickness.u_mm;
   }
   result->mean.mm /= (double)result->foils;
   result->mean.u_mm /= (double)result->foils;
@@ -108,7 +108,7 @@ static double add_stiffness_row(const fg_lot_analysis *analysis, const fg_foil *
   const fg_arch arch = fg_design_arch(&settings->design, thickness_mm, radius, angle);
   columns->arch_radius[at] = arch.radius_mm;
   columns->arch_length[at] = arch.radius_mm * angle;
-  columns->strip[at] = foil->thickness_mm;
+  columns->strip[at] = foil->thickness.mm;
   fg_bump scattered = *bump; /* errors that all bumps share cause no spread */
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_BUMP, &scattered, &bump->calibrated);
   columns->measurement[at] =

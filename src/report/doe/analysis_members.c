@@ -58,22 +58,23 @@ static const fg_members fit_members = FG_MEMBERS(fit_rows);
 /* Measurement of the responses. */
 static fg_subject find_measurement(const fg_subject *s) {
   const fg_experiment *e = fg_doe_experiment_at(s);
-  return (fg_subject){.object = e->u ? e : NULL, .whole = s->whole};
+  return (fg_subject){.object = e->measurement.u ? e : NULL, .whole = s->whole};
 }
 
 static double is_weighted(const fg_subject *s) {
-  return fg_doe_experiment_at(s)->weight != NULL;
+  return fg_doe_experiment_at(s)->measurement.weight != NULL;
 }
 
 static double find_measured_share(const fg_subject *s) {
   const fg_experiment *e = fg_doe_experiment_at(s);
-  return e->u_rms * e->u_rms / (e->regression.residual_sd * e->regression.residual_sd);
+  return e->measurement.u_rms * e->measurement.u_rms /
+         (e->regression.residual_sd * e->regression.residual_sd);
 }
 
 static const fg_member measurement_rows[] = {
-    {FG_NUMBER("u_rms", fg_experiment, u_rms), .words = "of the runs' uncertainties"},
+    {FG_NUMBER("u_rms", fg_experiment, measurement.u_rms), .words = "of the runs' uncertainties"},
     {FG_FLAG_BY("weighted", is_weighted), .words = "runs have weights by their uncertainties"},
-    {FG_NUMBER("process_sd", fg_experiment, process_sd),
+    {FG_NUMBER("process_sd", fg_experiment, measurement.process_sd),
      .words = "scatter besides the measurement's; null: not separated"},
     {FG_NUMBER_BY("share_of_residual_variance", find_measured_share)},
 };

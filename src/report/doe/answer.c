@@ -66,8 +66,8 @@ static void put_best(FILE *out, const fg_experiment *e) {
   fputs("<p class=\"set\">", out);
   fg_html_text(out, setting);
   fputs("</p>\n<p>", out);
-  if (of->has_rounded) {
-    fg_experiment_setting_words(e, of->optimum.x, setting, sizeof setting);
+  if (of->best.has_rounded) {
+    fg_experiment_setting_words(e, of->best.optimum.x, setting, sizeof setting);
     fputs("The best of the settings that can be made; without rounding: ", out);
     fg_html_text(out, setting);
     fputs(". ", out);
@@ -87,16 +87,17 @@ void fg_doe_put_answer(FILE *out, const fg_experiment *e, const fg_sentences *co
   char words[300];
   fg_name_words(e->response, words, sizeof words);
   fputs("<div class=\"answer\">\n<h2 class=\"first\">", out);
-  bool has_best = fg_experiment_best(e)->has_optimum;
-  if (has_best && e->goal == FG_GOAL_TARGET)
-    fprintf(out, "Best setting for %.6g of ", e->target);
+  bool has_best = fg_experiment_best(e)->best.found;
+  if (has_best && e->best.goal == FG_GOAL_TARGET)
+    fprintf(out, "Best setting for %.6g of ", e->best.target);
   else
-    fprintf(out, "Best setting for the %s ", e->goal == FG_GOAL_HIGHEST ? "highest" : "lowest");
+    fprintf(out, "Best setting for the %s ",
+            e->best.goal == FG_GOAL_HIGHEST ? "highest" : "lowest");
   fg_html_text(out, words);
   fputs("</h2>\n", out);
   if (!has_best)
     put_strongest(out, e, conclusions);
-  else if (e->all_idle)
+  else if (e->idle.all)
     put_no_best(out, conclusions);
   else
     put_best(out, e);

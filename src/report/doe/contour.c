@@ -37,7 +37,7 @@ typedef struct slice {
 
 /* Returns the best setting: among those a machine has, where steps were given. */
 static const fg_optimum *best_of(const fg_experiment *e) {
-  return e->has_rounded ? &e->rounded : &e->optimum;
+  return e->best.has_rounded ? &e->best.rounded : &e->best.optimum;
 }
 
 /* Places of the plot that words keep clear of, in units of its view box. */
@@ -324,7 +324,7 @@ static void put_contour(FILE *out, const fg_experiment *e, size_t a, size_t b) {
 
 void fg_doe_plot_contours(FILE *out, const fg_experiment *e) {
   size_t shown = 0;
-  if (!e->has_optimum) return;
+  if (!e->best.found) return;
   for (size_t a = 0; a < e->surface.factors; a++)
     for (size_t b = a + 1; b < e->surface.factors && shown < CONTOURS_SHOWN; b++, shown++)
       put_contour(out, e, a, b);

@@ -82,29 +82,30 @@ static const fg_member input_rows[] = {
 static const fg_members input_members = FG_MEMBERS_DEFINED(input_rows, "input");
 
 /* Effects that a loop's model has subtracted. */
-static const fg_member taken_rows[] = {
-    {FG_TEXT("id", fg_experiment_taken, id), .words = "of the effect"},
-    {FG_TEXT("words", fg_experiment_taken, words)},
-    {FG_FLAG("taken_out", fg_experiment_taken, applied),
+static const fg_member subtracted_effect_rows[] = {
+    {FG_TEXT("id", fg_subtracted_effect, id), .words = "of the effect"},
+    {FG_TEXT("words", fg_subtracted_effect, words)},
+    {FG_FLAG("taken_out", fg_subtracted_effect, applied),
      .words = "false: it concerns rows of the table it was found in"},
-    {FG_NUMBER_U("amplitude", fg_experiment_taken, amplitude, u_amplitude),
+    {FG_NUMBER_U("amplitude", fg_subtracted_effect, amplitude, u_amplitude),
      .words = "half its range in its own data"},
-    {FG_COUNT("parameters", fg_experiment_taken, parameters), .words = "estimated for it"},
-    {FG_RANGE("range", fg_experiment_taken, low, high),
+    {FG_COUNT("parameters", fg_subtracted_effect, parameters), .words = "estimated for it"},
+    {FG_RANGE("range", fg_subtracted_effect, low, high),
      .words = "of the part subtracted from these runs"},
 };
-static const fg_members taken_members = FG_MEMBERS(taken_rows);
+static const fg_members subtracted_effect_members = FG_MEMBERS(subtracted_effect_rows);
 
-static const fg_member takens_rows[] = {
-    {FG_COUNT("freedom", fg_experiment, dof_taken),
+static const fg_member subtracted_rows[] = {
+    {FG_COUNT("freedom", fg_experiment, subtracted.dof),
      .words = "degrees of freedom of the residual that paid for it"},
-    {FG_LIST("effects", fg_experiment, taken, takens, &taken_members)},
+    {FG_LIST("effects", fg_experiment, subtracted.effects, subtracted.count,
+             &subtracted_effect_members)},
 };
-static const fg_members takens_members = FG_MEMBERS(takens_rows);
+static const fg_members subtracted_members = FG_MEMBERS(subtracted_rows);
 
-static fg_subject find_takens(const fg_subject *s) {
+static fg_subject find_subtracted(const fg_subject *s) {
   const fg_experiment *e = fg_doe_experiment_at(s);
-  return (fg_subject){.object = e->takens ? e : NULL, .whole = s->whole};
+  return (fg_subject){.object = e->subtracted.count ? e : NULL, .whole = s->whole};
 }
 
 /* Factors. */
@@ -305,7 +306,7 @@ static const fg_member report_rows[] = {
      .words = "oddity of the plan: it is lost, or runs were made at other settings"},
     {FG_TEXTS_BY("conclusions", conclusion_at), .words = "in plain words"},
     {FG_TEXTS_BY("notes", note_at), .words = "results that could not be computed, with the reason"},
-    {FG_PART("taken_out", find_takens, &takens_members),
+    {FG_PART("taken_out", find_subtracted, &subtracted_members),
      .words = "effects of a loop's model, subtracted from the response before the analysis; null: "
               "none"},
     {FG_LIST_BY("factors", find_factor, &factor_members), .words = "numeric ones"},

@@ -182,7 +182,7 @@ static void put_doe_runs(FILE *out, const fg_experiment_report *report) {
                          e->setting[i * e->model.formula.variables + e->factor[k].variable]),
           6);
     put_doe_cell(out, r->fitted[i] + r->residual[i], 5);
-    put_doe_cell(out, e->u ? e->u[i] : NAN, 2);
+    put_doe_cell(out, e->measurement.u ? e->measurement.u[i] : NAN, 2);
     put_doe_cell(out, r->fitted[i], 5);
     put_doe_cell(out, r->residual_dof ? r->residual[i] : 0, 3);
     put_doe_cell(out, r->external[i], 3);
@@ -263,7 +263,7 @@ static fg_status put_plots(fg_context *ctx, FILE *out, const fg_experiment_repor
     end_panels(out);
   }
   const fg_experiment *best = fg_experiment_best(e);
-  if (best->has_optimum && best->surface.factors >= 2) {
+  if (best->best.found && best->surface.factors >= 2) {
     begin_panels(out, "Response surface",
                  "Through the best setting (red diamond). Circles: the runs. Pale, behind the "
                  "dark edge: outside the region of the data or the constraints.");

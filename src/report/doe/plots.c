@@ -116,7 +116,7 @@ void fg_doe_plot_main_effects(FILE *out, const fg_experiment *e) {
 
 /* Everything in the middle of the data; words at the optimum's level. */
 static void middle_setting(const fg_experiment *e, double *setting) {
-  memcpy(setting, e->best_setting, e->model.formula.variables * sizeof *setting);
+  memcpy(setting, e->best.levels, e->model.formula.variables * sizeof *setting);
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     const fg_factor *f = e->model.levels[v].count ? NULL : factor_of_variable(e, v);
     if (f) setting[v] = (f->lowest + f->highest) / 2;

@@ -146,11 +146,11 @@ static const char *const goal_words[] = {"lowest", "highest", "target", NULL};
 
 static const char *find_goal(const fg_subject *s, char *buffer) {
   (void)buffer;
-  return fg_goal_word(best_of(s)->goal);
+  return fg_goal_word(best_of(s)->best.goal);
 }
 
 static double find_target(const fg_subject *s) {
-  return best_of(s)->goal == FG_GOAL_TARGET ? best_of(s)->target : NAN;
+  return best_of(s)->best.goal == FG_GOAL_TARGET ? best_of(s)->best.target : NAN;
 }
 
 static const char *constraint_at(const fg_subject *s, size_t i) {
@@ -172,7 +172,7 @@ static const char *find_level_variable(const fg_subject *s) {
 static const char *find_level_name(const fg_subject *s, char *buffer) {
   const fg_experiment *e = best_of(s);
   (void)buffer;
-  return e->model.levels[s->index].name[(size_t)e->best_setting[s->index]];
+  return e->model.levels[s->index].name[(size_t)e->best.levels[s->index]];
 }
 
 static const fg_member level_rows[] = {
@@ -192,12 +192,12 @@ static const fg_member optimum_rows[] = {
 static const fg_members optimum_members = FG_MEMBERS(optimum_rows);
 
 static fg_subject find_optimum(const fg_subject *s) {
-  return (fg_subject){.object = best_of(s)->has_optimum ? &best_of(s)->optimum : NULL,
+  return (fg_subject){.object = best_of(s)->best.found ? &best_of(s)->best.optimum : NULL,
                       .whole = s->whole};
 }
 
 static bool has_optimum(const fg_subject *s) {
-  return best_of(s)->has_optimum;
+  return best_of(s)->best.found;
 }
 
 /* The best setting that can be made. */
@@ -207,7 +207,7 @@ static bool find_step_of_axis(const fg_subject *list, size_t k, fg_subject *elem
 }
 
 static double find_step(const fg_subject *s) {
-  return best_of(s)->step[s->index] > 0 ? best_of(s)->step[s->index] : NAN;
+  return best_of(s)->best.step[s->index] > 0 ? best_of(s)->best.step[s->index] : NAN;
 }
 
 static const fg_member step_rows[] = {{FG_NUMBER_BY(NULL, find_step)}};
@@ -223,7 +223,7 @@ static const fg_member rounded_rows[] = {
 static const fg_members rounded_members = FG_MEMBERS(rounded_rows);
 
 static fg_subject find_rounded(const fg_subject *s) {
-  return (fg_subject){.object = best_of(s)->has_rounded ? &best_of(s)->rounded : NULL,
+  return (fg_subject){.object = best_of(s)->best.has_rounded ? &best_of(s)->best.rounded : NULL,
                       .whole = s->whole};
 }
 
@@ -238,8 +238,8 @@ static const fg_members ridge_members = FG_MEMBERS(ridge_rows);
 
 static bool find_ridge_point(const fg_subject *list, size_t i, fg_subject *element) {
   const fg_experiment *e = best_of(list);
-  element->object = &e->ridge[i];
-  return i < FG_RIDGE_POINTS && e->ridge[FG_RIDGE_POINTS - 1].radius > 0;
+  element->object = &e->best.ridge[i];
+  return i < FG_RIDGE_POINTS && e->best.ridge[FG_RIDGE_POINTS - 1].radius > 0;
 }
 
 /* Factors without a significant effect. */
@@ -258,8 +258,8 @@ static const fg_member idle_rows[] = {
 static const fg_members idle_members = FG_MEMBERS(idle_rows);
 
 static bool find_idle(const fg_subject *list, size_t i, fg_subject *element) {
-  element->object = &fg_doe_experiment_at(list)->idle[i];
-  return i < fg_doe_experiment_at(list)->idles;
+  element->object = &fg_doe_experiment_at(list)->idle.factor[i];
+  return i < fg_doe_experiment_at(list)->idle.count;
 }
 
 /* The surface. */
@@ -385,7 +385,7 @@ static double find_run_response(const fg_subject *s) {
 }
 
 static double find_run_u(const fg_subject *s) {
-  const double *u = fg_doe_experiment_at(s)->u;
+  const double *u = fg_doe_experiment_at(s)->measurement.u;
   return u ? u[s->index] : NAN;
 }
 

@@ -173,7 +173,7 @@ static fg_status conclude_quality(fg_context *ctx, const fg_experiment *e, fg_se
         "them by %.3g.",
         sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_variance)));
   if (fg_experiment_lacks_fit(e)) {
-    if (!fg_experiment_best(e)->has_optimum) FG_TRY(fg_experiment_conclude_lack(ctx, e, s));
+    if (!fg_experiment_best(e)->best.found) FG_TRY(fg_experiment_conclude_lack(ctx, e, s));
   } else if (r->pure_dof && r->lack_dof && isfinite(r->lack_p_value) && !e->has_split_plot)
     FG_TRY(fg_sentences_add(ctx, s,
                             "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
@@ -217,12 +217,14 @@ static fg_status conclude_curvature(fg_context *ctx, const fg_experiment *e, fg_
 
 static fg_status conclude_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   double sd = e->regression.residual_sd;
-  if (!e->u || e->weight || !e->regression.residual_dof || !(sd > 0)) return FG_OK;
+  if (!e->measurement.u || e->measurement.weight || !e->regression.residual_dof || !(sd > 0))
+    return FG_OK;
   return fg_sentences_add(
       ctx, s,
       "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "
       "rest is the process.",
-      e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
+      e->measurement.u_rms,
+      fmin(100, 100 * e->measurement.u_rms * e->measurement.u_rms / (sd * sd)));
 }
 
 /* The error that all scans share is in no run's u. */
@@ -247,7 +249,7 @@ fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report 
   const fg_experiment *e = report->experiment;
   *s = (fg_sentences){0};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_experiment_conclude_taken(ctx, report, s));
+  FG_TRY_EXIT(fg_experiment_conclude_subtracted(ctx, report, s));
   FG_TRY_EXIT(fg_experiment_conclude_best(ctx, e, s));
   FG_TRY_EXIT(fg_experiment_conclude_asked(ctx, e, s));
   FG_TRY_EXIT(fg_experiment_conclude_blocks(ctx, e, s));

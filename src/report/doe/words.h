@@ -25,8 +25,8 @@ fg_status fg_sentences_add(fg_context *ctx, fg_sentences *sentences, const char 
 bool fg_sentence_is_command(const char *text);
 
 /* Add parts of the conclusions: effects taken out before the analysis; effects over the order. */
-fg_status fg_experiment_conclude_taken(fg_context *ctx, const fg_experiment_report *report,
-                                       fg_sentences *sentences);
+fg_status fg_experiment_conclude_subtracted(fg_context *ctx, const fg_experiment_report *report,
+                                            fg_sentences *sentences);
 fg_status fg_experiment_conclude_order(fg_context *ctx, const fg_experiment_report *report,
                                        fg_sentences *sentences);
 

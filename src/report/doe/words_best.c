@@ -8,8 +8,8 @@
 #include "report/unit_words.h"
 
 static const fg_idle_factor *idle_of(const fg_experiment *e, size_t variable) {
-  for (size_t i = 0; i < e->idles; i++)
-    if (e->idle[i].variable == variable) return &e->idle[i];
+  for (size_t i = 0; i < e->idle.count; i++)
+    if (e->idle.factor[i].variable == variable) return &e->idle.factor[i];
   return NULL;
 }
 
@@ -45,7 +45,7 @@ static void put_variable(const fg_experiment *best, const double *x, const char 
   }
   if (best->model.levels[v].count)
     fg_text_clip(text, size, "%s %s", best->model.formula.variable[v].name,
-                 best->model.levels[v].name[(size_t)best->best_setting[v]]);
+                 best->model.levels[v].name[(size_t)best->best.levels[v]]);
 }
 
 /* True where a constraint involves the factor: then not every setting is allowed. */
@@ -63,7 +63,7 @@ static void put_setting(const fg_experiment *e, const double *x, bool with_idle,
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     const char *column = e->model.formula.variable[v].column;
     char one[400] = "", name[300];
-    if (idle_of(e, v) && (e->reduced || e->all_idle) && with_idle) {
+    if (idle_of(e, v) && (e->reduced || e->idle.all) && with_idle) {
       fg_name_words(column, name, sizeof name);
       fg_text_clip(one, sizeof one, "%s any%s (cheapest will do)", name,
                    is_constrained(e, v) ? " that the constraints allow" : "");
@@ -83,7 +83,7 @@ fg_status fg_experiment_conclude_stationary(fg_context *ctx, const fg_experiment
                                             fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   char setting[700], value[80];
-  if (!best->has_optimum || !best->surface.has_stationary || e->all_idle) return FG_OK;
+  if (!best->best.found || !best->surface.has_stationary || e->idle.all) return FG_OK;
   put_setting(e, best->surface.stationary, false, setting, sizeof setting);
   fg_value_with_unit(e->response, best->surface.stationary_value, 4, value, sizeof value);
   return fg_sentences_add(ctx, s, "The surface is stationary at %s: a %s of %s, %s the region.",
@@ -100,29 +100,29 @@ static fg_status conclude_expected(fg_context *ctx, const fg_experiment *e, cons
     fg_value_with_unit(e->response, numbers[i], i ? 3 : 4, n[i], sizeof n[i]);
   if (!isfinite(p->low))
     return fg_sentences_add(ctx, s, "%s (%s): %s. Expected response %s.", what,
-                            fg_goal_word(e->goal), setting, n[0]);
+                            fg_goal_word(e->best.goal), setting, n[0]);
   return fg_sentences_add(
       ctx, s,
       "%s (%s): %s. Expected response %s (%g %% interval %s to %s); one confirmation run "
       "should fall between %s and %s.",
-      what, fg_goal_word(e->goal), setting, n[0], 100 * e->confidence, n[1], n[2], n[3], n[4]);
+      what, fg_goal_word(e->best.goal), setting, n[0], 100 * e->confidence, n[1], n[2], n[3], n[4]);
 }
 
 static fg_status conclude_rounded(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   char setting[700], what[700] = "Best setting that can be made, in steps of ";
   const char *separator = "";
-  if (!best->has_rounded) return FG_OK;
+  if (!best->best.has_rounded) return FG_OK;
   for (size_t k = 0; k < best->surface.factors; k++) {
     char step[80];
     size_t used = strlen(what);
-    if (!(best->step[k] > 0)) continue;
-    fg_value_with_unit(fg_surface_factor(best, k)->name, best->step[k], 5, step, sizeof step);
+    if (!(best->best.step[k] > 0)) continue;
+    fg_value_with_unit(fg_surface_factor(best, k)->name, best->best.step[k], 5, step, sizeof step);
     fg_text_clip(what + used, sizeof what - used, "%s%s", separator, step);
     separator = " and ";
   }
-  put_setting(e, best->rounded.x, true, setting, sizeof setting);
-  return conclude_expected(ctx, e, what, setting, &best->rounded.prediction, s);
+  put_setting(e, best->best.rounded.x, true, setting, sizeof setting);
+  return conclude_expected(ctx, e, what, setting, &best->best.rounded.prediction, s);
 }
 
 /* The best setting of the model as given, with the factors that are only noise. */
@@ -149,7 +149,7 @@ static fg_status conclude_no_best(fg_context *ctx, const fg_experiment *e, fg_se
   put_setting(e, NULL, true, setting, sizeof setting);
   FG_TRY(fg_sentences_add(
       ctx, s, "No best setting (%s): %s. No factor can be told from the scatter at %g %%%s.",
-      fg_goal_word(e->goal), setting, 100 * e->confidence, p_value));
+      fg_goal_word(e->best.goal), setting, 100 * e->confidence, p_value));
   return conclude_as_given(ctx, e, s);
 }
 
@@ -185,12 +185,12 @@ static fg_status conclude_idle(fg_context *ctx, const fg_experiment *e, const fg
 }
 
 static fg_status conclude_idles(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
-  if (!e->reduced && !e->all_idle) return FG_OK;
-  for (size_t i = 0; i < e->idles; i++)
-    FG_TRY(conclude_idle(ctx, e, &e->idle[i], s));
+  if (!e->reduced && !e->idle.all) return FG_OK;
+  for (size_t i = 0; i < e->idle.count; i++)
+    FG_TRY(conclude_idle(ctx, e, &e->idle.factor[i], s));
   if (!e->reduced) return FG_OK;
   return fg_sentences_add(ctx, s, "The best setting is that of the model without %s: %s.",
-                          e->idles > 1 ? "them" : "it", e->reduced->formula);
+                          e->idle.count > 1 ? "them" : "it", e->reduced->formula);
 }
 
 fg_status fg_experiment_conclude_lack(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
@@ -204,7 +204,7 @@ fg_status fg_experiment_conclude_lack(fg_context *ctx, const fg_experiment *e, f
 
 /* Tells an optimum at the border of the runs from one that a constraint holds. */
 static fg_status conclude_border(fg_context *ctx, const fg_experiment *best, fg_sentences *s) {
-  if (best->optimum.on_edge_of_runs)
+  if (best->best.optimum.on_edge_of_runs)
     return fg_sentences_add(ctx, s,
                             "It lies on the border of the region: the best may lie beyond, where "
                             "there are no runs.");
@@ -217,27 +217,27 @@ static fg_status conclude_trust(fg_context *ctx, const fg_experiment *e, fg_sent
   const fg_experiment *best = fg_experiment_best(e);
   const fg_prediction *p = &fg_experiment_best_point(e)->prediction;
   size_t before = s->count;
-  if (!e->all_idle && e->regression.model_p_value > 1 - e->confidence)
+  if (!e->idle.all && e->regression.model_p_value > 1 - e->confidence)
     FG_TRY(fg_sentences_add(ctx, s,
                             "Not sure: the model as a whole cannot be told from the mean (p = "
                             "%.3f). It is a setting to test, not a finding.",
                             e->regression.model_p_value));
   if (fg_experiment_lacks_fit(e)) FG_TRY(fg_experiment_conclude_lack(ctx, e, s));
-  if (best->optimum.on_border && !e->all_idle) FG_TRY(conclude_border(ctx, best, s));
+  if (best->best.optimum.on_border && !e->idle.all) FG_TRY(conclude_border(ctx, best, s));
   if (!isfinite(p->low))
     FG_TRY(fg_sentences_add(ctx, s,
                             "Not sure: how sure cannot be said, as no degree of freedom is left "
                             "for an error. Repeat runs."));
-  if (s->count == before && !e->all_idle)
+  if (s->count == before && !e->idle.all)
     FG_TRY(fg_sentences_add(
         ctx, s, "It lies inside the region of the runs, by a model that they do not contradict."));
-  if (!e->all_idle && isfinite(p->low))
+  if (!e->idle.all && isfinite(p->low))
     FG_TRY(fg_sentences_add(
         ctx, s,
         "The intervals hold at all settings of the region at once, so also at this one, which the "
         "same runs chose. For a setting that was chosen without these runs --at has narrower "
         "ones."));
-  if (e->magnitude && !e->all_idle && isfinite(p->run_low) && p->run_low < 0)
+  if (e->magnitude && !e->idle.all && isfinite(p->run_low) && p->run_low < 0)
     FG_TRY(fg_sentences_add(
         ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
   return FG_OK;
@@ -247,17 +247,17 @@ fg_status fg_experiment_conclude_best(fg_context *ctx, const fg_experiment *e, f
   const fg_experiment *best = fg_experiment_best(e);
   char setting[700];
   s->trust = s->setting = s->count;
-  if (!best->has_optimum) return FG_OK;
-  if (e->all_idle) {
+  if (!best->best.found) return FG_OK;
+  if (e->idle.all) {
     FG_TRY(conclude_no_best(ctx, e, s));
   } else {
     FG_TRY(conclude_rounded(ctx, e, s));
-    put_setting(e, best->optimum.x, true, setting, sizeof setting);
+    put_setting(e, best->best.optimum.x, true, setting, sizeof setting);
     FG_TRY(conclude_expected(ctx, e,
                              e->constraints
                                  ? "Best setting in the region of the data and the constraints"
                                  : "Best setting in the region of the data",
-                             setting, &best->optimum.prediction, s));
+                             setting, &best->best.optimum.prediction, s));
   }
   s->trust = s->count;
   FG_TRY(conclude_trust(ctx, e, s));
@@ -284,7 +284,7 @@ static double scatter_of_blocks(const fg_experiment *e, size_t *blocks) {
 fg_status fg_experiment_conclude_blocks(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   size_t blocks;
   char scatter[80];
-  if (!e->block || (!e->has_optimum && !e->askeds)) return FG_OK;
+  if (!e->block || (!e->best.found && !e->askeds)) return FG_OK;
   double sd = scatter_of_blocks(e, &blocks);
   if (!isfinite(sd)) return FG_OK;
   fg_value_with_unit(e->response, sd, 3, scatter, sizeof scatter);

@@ -32,37 +32,39 @@ fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report
   return FG_OK;
 }
 
-static fg_status conclude_one_taken(fg_context *ctx, const fg_experiment_taken *t,
-                                    fg_sentences *s) {
+static fg_status conclude_subtracted_effect(fg_context *ctx, const fg_subtracted_effect *effect,
+                                            fg_sentences *s) {
   char size[80] = "";
-  const char *parameters = t->parameters == 1 ? "parameter" : "parameters";
-  if (!t->applied)
-    return fg_sentences_add(
-        ctx, s, "Not taken out: %s, which concerns rows of the table it was found in.", t->words);
-  if (*t->sentence)
+  const char *parameters = effect->parameters == 1 ? "parameter" : "parameters";
+  if (!effect->applied)
+    return fg_sentences_add(ctx, s,
+                            "Not taken out: %s, which concerns rows of the table it was found in.",
+                            effect->words);
+  if (*effect->sentence)
     return fg_sentences_add(
         ctx, s, "Taken out before the analysis: %s (%zu %s), %.3g to %.3g in these runs.",
-        t->sentence, t->parameters, parameters, t->low, t->high);
-  fg_scan_loop_value_words(2 * t->amplitude, 2 * t->u_amplitude, size, sizeof size);
+        effect->sentence, effect->parameters, parameters, effect->low, effect->high);
+  fg_scan_loop_value_words(2 * effect->amplitude, 2 * effect->u_amplitude, size, sizeof size);
   return fg_sentences_add(ctx, s,
                           "Taken out before the analysis: %s (from its lowest to its highest %s, "
                           "95 %%; %zu %s), %.3g to %.3g in these runs.",
-                          t->words, size, t->parameters, parameters, t->low, t->high);
+                          effect->words, size, effect->parameters, parameters, effect->low,
+                          effect->high);
 }
 
-fg_status fg_experiment_conclude_taken(fg_context *ctx, const fg_experiment_report *report,
-                                       fg_sentences *s) {
+fg_status fg_experiment_conclude_subtracted(fg_context *ctx, const fg_experiment_report *report,
+                                            fg_sentences *s) {
   const fg_experiment *e = report->experiment;
-  for (size_t i = 0; i < e->takens; i++)
-    FG_TRY(conclude_one_taken(ctx, &e->taken[i], s));
-  for (size_t i = 0; i < e->takens; i++)
-    if (fg_experiment_is_of_factors(e, &e->taken[i]))
+  for (size_t i = 0; i < e->subtracted.count; i++)
+    FG_TRY(conclude_subtracted_effect(ctx, &e->subtracted.effects[i], s));
+  for (size_t i = 0; i < e->subtracted.count; i++)
+    if (fg_experiment_is_of_factors(e, &e->subtracted.effects[i]))
       FG_TRY(fg_sentences_add(ctx, s,
                               "No best setting: %s is of the model's own factors, and the response "
                               "at a setting has it. Declare it in the formula instead, as the "
                               "loop's next step says.",
-                              e->taken[i].words));
-  if (!e->dof_taken) return FG_OK;
+                              e->subtracted.effects[i].words));
+  if (!e->subtracted.dof) return FG_OK;
   if (!e->regression.residual_dof)
     return fg_sentences_add(ctx, s,
                             "%s estimated it from runs like these; this model leaves no degree of "
@@ -73,7 +75,7 @@ fg_status fg_experiment_conclude_taken(fg_context *ctx, const fg_experiment_repo
       "The estimates of %s cost degrees of freedom: the residual has %zu degree%s of freedom "
       "instead of %zu.",
       report->model_path ? report->model_path : "the model", e->regression.residual_dof,
-      fg_plural(e->regression.residual_dof), e->regression.residual_dof + e->dof_taken);
+      fg_plural(e->regression.residual_dof), e->regression.residual_dof + e->subtracted.dof);
 }
 
 static fg_status conclude_farthest(fg_context *ctx, const fg_experiment_report *report,

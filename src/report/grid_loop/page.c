@@ -61,29 +61,29 @@ static void put_grid_tiles(FILE *out, const fg_grid_loop_result *r) {
 static void put_grid_map(FILE *out, const fg_grid_loop_result *r) {
   size_t count = r->map_columns * r->map_rows;
   const fg_measurement *m = r->scan[0].measurement;
-  const double size[2] = {(double)m->width_px * 25.4 / m->dpi[0],
-                          (double)m->height_px * 25.4 / m->dpi[1]};
+  double size_mm[2];
+  fg_measurement_size_mm(m, size_mm);
   fg_map_arrow *arrows = malloc((count + 1) * sizeof *arrows);
   for (size_t i = 0; arrows && i < count; i++)
     arrows[i] =
         (fg_map_arrow){r->map[i].at_mm, {r->map[i].d_um.x / 1000, r->map[i].d_um.y / 1000}, true};
   if (arrows)
-    fg_html_arrows(out, arrows, count, size, "Displacement of the scanner: true less measured");
+    fg_html_arrows(out, arrows, count, size_mm, "Displacement of the scanner: true less measured");
   free(arrows);
 }
 
 static void put_scan_residuals(FILE *out, const fg_grid_scan *scan) {
   const fg_measurement *m = scan->measurement;
   const fg_grid *grid = m->grid;
-  const double size[2] = {(double)m->width_px * 25.4 / m->dpi[0],
-                          (double)m->height_px * 25.4 / m->dpi[1]};
+  double size_mm[2];
+  fg_measurement_size_mm(m, size_mm);
   fg_map_arrow *arrows = malloc((grid->count + 1) * sizeof *arrows);
   fputs("<h3>", out);
   fg_html_text(out, m->scan);
   fputs("</h3>\n", out);
   for (size_t i = 0; arrows && i < grid->count; i++)
     arrows[i] = (fg_map_arrow){grid->marks[i].at_mm, scan->residual_mm[i], grid->marks[i].used};
-  if (arrows) fg_html_arrows(out, arrows, grid->count, size, "Marks after all corrections");
+  if (arrows) fg_html_arrows(out, arrows, grid->count, size_mm, "Marks after all corrections");
   free(arrows);
 }
 

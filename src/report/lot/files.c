@@ -82,30 +82,27 @@ static fg_status write_report_files(fg_context *ctx, const char *folder,
   return fg_output_end(ctx, &w.last, status);
 }
 
+static fg_lot_verdicts list_verdicts(size_t count, const size_t *by_verdict) {
+  fg_lot_verdicts verdicts = {.count = count};
+  memcpy(verdicts.by_verdict, by_verdict, sizeof verdicts.by_verdict);
+  return verdicts;
+}
+
 static void fill_lot_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {
   outcome->judged = analysis->outcome;
-  outcome->scans = analysis->lot->manifest.items;
-  outcome->failed = analysis->failed_scans;
-  outcome->foils = analysis->foil_count;
-  const fg_record *repeat;
-  outcome->repeated = fg_lot_count_repeats(analysis->lot, &repeat);
-  if (repeat)
-    fg_text_clip(outcome->first_repeated, sizeof outcome->first_repeated, "%s", repeat->error);
+  outcome->scans.count = analysis->lot->manifest.items;
+  outcome->scans.failed = analysis->failed_scans;
+  outcome->notes.repeated = analysis->repeated;
+  outcome->notes.invalid_dates = analysis->invalid_dates;
   outcome->exceeded = analysis->exceeded;
-  for (int i = 0; i <= FG_VERDICT_NONE; i++)
-    outcome->foils_by_verdict[i] = analysis->by_verdict[i];
+  outcome->foils = list_verdicts(analysis->foil_count, analysis->by_verdict);
+  outcome->bearings = list_verdicts(analysis->bearing_count, analysis->bearings_by_verdict);
   fg_traceability_sentence(&analysis->lot->settings.design, outcome->traced,
                            sizeof outcome->traced);
-  outcome->bearings = analysis->bearing_count;
   outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
-  const char *no_date;
-  outcome->no_dates = fg_lot_date_count_invalid(&analysis->lot->manifest, &no_date);
-  if (no_date) fg_text_clip(outcome->first_no_date, sizeof outcome->first_no_date, "%s", no_date);
   memcpy(outcome->assembly, analysis->assembly.statement, sizeof analysis->assembly.statement);
   if (outcome->assembly[0][0] && !analysis->assembly.why[0])
     fg_text_clip(outcome->assembly[3], sizeof outcome->assembly[3], "%s", fg_assembly_scope);
-  for (int i = 0; i <= FG_VERDICT_NONE; i++)
-    outcome->bearings_by_verdict[i] = analysis->bearings_by_verdict[i];
 }
 
 fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,

@@ -38,7 +38,7 @@ static const fg_member date_rows[] = {
      .pattern = DATE_PATTERN},
     {FG_STRING("from", fg_lot_analysis, date.from), .choices = date_sources,
      .words = "`manifest`: its column `date`; `scans`: the times of the scans' files (UTC)"},
-    {FG_COUNT("cells_not_dates", fg_lot_analysis, invalid_dates), .lowest = 1,
+    {FG_COUNT("cells_not_dates", fg_lot_analysis, invalid_dates.count), .lowest = 1,
      .options = FG_MEMBER_EMPTY_IS_NULL | FG_MEMBER_LEFT_OUT,
      .words = "cells of the manifest's column `date` that are no date: the column is not taken"},
 };
@@ -54,7 +54,7 @@ static double count_scans(const fg_subject *subject) {
 static const fg_member count_rows[] = {
     {FG_COUNT_BY("scans", count_scans)},
     {FG_COUNT("scans_not_measured", fg_lot_analysis, failed_scans)},
-    {FG_COUNT("scans_repeated", fg_lot_analysis, repeated_scans),
+    {FG_COUNT("scans_repeated", fg_lot_analysis, repeated.count),
      .words = "scans with the bytes of an earlier one under another name; among "
               "scans_not_measured"},
     {FG_COUNT("foils", fg_lot_analysis, foil_count)},

@@ -77,7 +77,7 @@ static size_t count_far_foils(const fg_lot_analysis *analysis) {
 
 static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   size_t failed = analysis->failed_scans, scans = analysis->lot->manifest.items;
-  size_t repeats = analysis->repeated_scans, far = count_far_foils(analysis);
+  size_t repeats = analysis->repeated.count, far = count_far_foils(analysis);
   bool parts = !fg_foil_traits_of(analysis->lot->settings.design.kind)->is_plain_strip;
   const fg_lot_words *words = fg_lot_words_of(analysis);
   const fg_tile tiles[] = {

@@ -142,7 +142,7 @@ void fg_html_colour_lines(FILE *out, const fg_measurement *m) {
         out,
         "<p class=\"next\"><b>The channels lie apart</b> by more than %.1f px: %s was measured. "
         "Measure one channel; do not average channels or convert the scan to gray.</p>\n",
-        FG_COLOUR_APART_PX, fg_channel_word(m->channel));
+        FG_COLOUR_APART_PX, fg_channel_word(m->file.channel));
   fprintf(
       out,
       "<p class=\"note\">Where each channel shows the edges, minus where %s does (x right, y "

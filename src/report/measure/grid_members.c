@@ -207,8 +207,8 @@ void fg_html_arrows(FILE *out, const fg_map_arrow *arrows, size_t count, const d
 
 void fg_html_grid(FILE *out, const fg_measurement *m) {
   const fg_grid *grid = m->grid;
-  const double size[2] = {(double)m->width_px * 25.4 / m->dpi[0],
-                          (double)m->height_px * 25.4 / m->dpi[1]};
+  double size_mm[2];
+  fg_measurement_size_mm(m, size_mm);
   fg_map_arrow *arrows = malloc((grid->count + 1) * sizeof *arrows);
   fputs("<p>", out);
   put_grid_words(out, grid, "<br>\n");
@@ -216,6 +216,6 @@ void fg_html_grid(FILE *out, const fg_measurement *m) {
   for (size_t i = 0; arrows && i < grid->count; i++)
     arrows[i] =
         (fg_map_arrow){grid->marks[i].at_mm, grid->marks[i].residual_mm, grid->marks[i].used};
-  if (arrows) fg_html_arrows(out, arrows, grid->count, size, "Marks against the fitted lattice");
+  if (arrows) fg_html_arrows(out, arrows, grid->count, size_mm, "Marks against the fitted lattice");
   free(arrows);
 }

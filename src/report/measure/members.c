@@ -48,17 +48,17 @@ static const char *find_sha256(const fg_subject *subject, char *buffer) {
 }
 
 static double find_width(const fg_subject *subject) {
-  return (double)((const fg_measurement *)subject->object)->width_px;
+  return (double)((const fg_measurement *)subject->object)->file.width_px;
 }
 
 static double find_height(const fg_subject *subject) {
-  return (double)((const fg_measurement *)subject->object)->height_px;
+  return (double)((const fg_measurement *)subject->object)->file.height_px;
 }
 
 static const char *find_measured_channel(const fg_subject *subject, char *buffer) {
   const fg_measurement *m = subject->object;
   (void)buffer;
-  return m->colour ? fg_channel_word(m->channel) : "gray";
+  return m->file.colour ? fg_channel_word(m->file.channel) : "gray";
 }
 
 static const char *const formats[] = {"PNG", "TIFF", "PNM", "JPEG", NULL};
@@ -67,12 +67,13 @@ static const char *const channels[] = {"gray", "red", "green", "blue", "luminanc
 static const fg_member file_rows[] = {
     {FG_COUNT_BY("width_px", find_width)},
     {FG_COUNT_BY("height_px", find_height)},
-    {FG_INTEGER("bit_depth", fg_measurement, bit_depth), .schema = "{\"enum\": [1, 2, 4, 8, 16]}"},
-    {FG_TEXT("format", fg_measurement, format), .choices = formats,
+    {FG_INTEGER("bit_depth", fg_measurement, file.bit_depth),
+     .schema = "{\"enum\": [1, 2, 4, 8, 16]}"},
+    {FG_STRING("format", fg_measurement, file.format), .choices = formats,
      .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL},
     {FG_TEXT_BY("channel", find_measured_channel), .choices = channels,
      .options = FG_MEMBER_NEVER_NULL, .words = "what of a colour scan was measured"},
-    {FG_INTEGER("jpeg_quality", fg_measurement, jpeg_quality), .lowest = 1, .highest = 100,
+    {FG_INTEGER("jpeg_quality", fg_measurement, file.jpeg_quality), .lowest = 1, .highest = 100,
      .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL,
      .words = "the scan has lost by JPEG: quality of the Independent JPEG Group with the nearest "
               "quantization table; every uncertainty is wider for it"},
@@ -83,7 +84,7 @@ static const fg_member file_rows[] = {
      .options = FG_MEMBER_LEFT_OUT | FG_MEMBER_EMPTY_IS_NULL,
      .words = "of the scanner's model that the edges were corrected by"},
     {FG_PAIR("dpi", fg_measurement, dpi), .words = "used: x, y"},
-    {FG_PAIR("dpi_file", fg_measurement, dpi_file),
+    {FG_PAIR("dpi_file", fg_measurement, file.dpi_file),
      .words = "as the file says, before it was snapped: x, y"},
 };
 static const fg_members file_members = FG_MEMBERS(file_rows);

@@ -15,7 +15,8 @@
 
 enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = FG_OVERLAY_LINE };
 static const double pixels_max = 48e6;
-/* Capitals of the legend: as high as can be read, and the legend as wide as its widest row needs. */
+/* Capitals of the legend: as high as can be read, and the legend as wide as its widest row needs.
+ */
 static const double em_min_px = 8, legend_width_em = 118;
 
 /* The legend: text in lines and columns under the picture. */
@@ -206,7 +207,7 @@ fg_status fg_report_write_overlay(fg_context *ctx, const fg_report *report, FILE
   fg_status status = FG_OK;
   if (report->scan_count != 1 || !measurement)
     return fg_fail(ctx, FG_ERR_USAGE, "an overlay shows exactly one measured scan");
-  const int64_t box[4] = {0, 0, measurement->width_px, measurement->height_px};
+  const int64_t box[4] = {0, 0, measurement->file.width_px, measurement->file.height_px};
   FG_TRY_EXIT(fg_picture_load(ctx, measurement, box, WIDTH_MAX, pixels_max, &picture));
   FG_TRY_EXIT(draw_overlay(ctx, measurement, &picture, &rgb));
   FG_TRY_EXIT(fg_png_encode(ctx, rgb.pixels, rgb.width, rgb.height, 3, &png, &size));

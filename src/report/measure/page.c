@@ -45,12 +45,12 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan file</dt><dd>", out);
   fg_html_name(out, measurement->scan);
   fprintf(out, "</dd>\n<dt>Pixels</dt><dd>%lld × %lld, %d bit</dd>\n",
-          (long long)measurement->width_px, (long long)measurement->height_px,
-          measurement->bit_depth);
+          (long long)measurement->file.width_px, (long long)measurement->file.height_px,
+          measurement->file.bit_depth);
   fprintf(out, "<dt>Resolution</dt><dd>%.8g × %.8g dpi", measurement->dpi[0], measurement->dpi[1]);
-  if (isfinite(measurement->dpi_file[0]))
-    fprintf(out, " (the file says %.8g × %.8g)", measurement->dpi_file[0],
-            measurement->dpi_file[1]);
+  if (isfinite(measurement->file.dpi_file[0]))
+    fprintf(out, " (the file says %.8g × %.8g)", measurement->file.dpi_file[0],
+            measurement->file.dpi_file[1]);
   fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
   fg_html_name(out, measurement->sha256);
   fputs("</dd>\n", out);
@@ -123,7 +123,7 @@ void fg_html_residual_figure(FILE *out, const fg_foil *foil, const char *against
   fprintf(out,
           "<figcaption>The midline against %s. Standard deviation %.3g µm, correlation length %.3g "
           "mm.</figcaption></figure>\n",
-          against, foil->noise_um, foil->correlation_mm);
+          against, foil->noise.sd_um, foil->noise.correlation_mm);
 }
 
 void fg_details_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
@@ -135,7 +135,7 @@ void fg_details_of_beams(FILE *out, const fg_design *design, const fg_foil *foil
   fprintf(out,
           "<figcaption>Edges scatter about their lines by %.3g µm, correlated over %.3g mm."
           "</figcaption></figure>\n",
-          foil->noise_um, foil->correlation_mm);
+          foil->noise.sd_um, foil->noise.correlation_mm);
   put_beam_words(out, design);
 }
 

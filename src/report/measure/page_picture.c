@@ -45,7 +45,7 @@ static double find_margin_mm(const fg_foil *foil) {
  * `beyond`: by how much the margin reaches over the scan's left, upper, right and lower edge. */
 static void choose_box(const fg_measurement *measurement, const fg_foil *foil, int64_t box[4],
                        int64_t beyond[4]) {
-  const int64_t size[2] = {measurement->width_px, measurement->height_px};
+  const int64_t size[2] = {measurement->file.width_px, measurement->file.height_px};
   double margin_mm = find_margin_mm(foil);
   for (int i = 0; i < 2; i++) {
     bool known = foil && foil->strip.box_px[2] > 0 && foil->strip.box_px[3] > 0;

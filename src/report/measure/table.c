@@ -227,7 +227,7 @@ static void put_quantities(FILE *out, const fg_design *design, const fg_foil *fo
       fg_quantity_shown(FG_QUANTITY_OF_FOIL, FG_QUANTITY_ON_TERMINAL, design->kind, shown);
   for (size_t i = 0; i < count; i++) {
     put_quantity(out, foil, shown[i]);
-    if (shown[i]->offset == offsetof(fg_foil, thickness_mm)) put_thickness_words(out, design, foil);
+    if (shown[i]->offset == offsetof(fg_foil, thickness.mm)) put_thickness_words(out, design, foil);
   }
 }
 
@@ -268,11 +268,13 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
     put_failed(out, scan);
     return FG_OK;
   }
-  fprintf(out, "%s: %lld × %lld px, %d bit, %.6g", scan->path, (long long)measurement->width_px,
-          (long long)measurement->height_px, measurement->bit_depth, measurement->dpi[0]);
+  fprintf(out, "%s: %lld × %lld px, %d bit, %.6g", scan->path,
+          (long long)measurement->file.width_px, (long long)measurement->file.height_px,
+          measurement->file.bit_depth, measurement->dpi[0]);
   if (measurement->dpi[0] != measurement->dpi[1]) fprintf(out, " × %.6g", measurement->dpi[1]);
   fputs(" dpi", out);
-  if (measurement->colour) fprintf(out, ", channel %s", fg_channel_word(measurement->channel));
+  if (measurement->file.colour)
+    fprintf(out, ", channel %s", fg_channel_word(measurement->file.channel));
   fputc('\n', out);
   fg_text_colour_lines(out, measurement);
   fg_text_picture_state(out, measurement);
