@@ -37,7 +37,7 @@ static double span_weighted(const fg_engine_span *null, const double *scale, dou
 }
 
 /* Twice the restricted log likelihood, up to what equal scales leave the same, of a response over
- * the rows' scales; `terms` are what the columns and scales alone contribute. */
+ * the rows' scales; `terms` is the share of the columns and scales alone. */
 static double likelihood(const fg_engine_span *null, const double *basis, double terms,
                          double *residual) {
   double rss = fg_engine_project_out(null->n, basis, null->rank, residual);
