@@ -21,17 +21,16 @@ static void add_columns(column_list *list, size_t first, size_t count) {
   }
 }
 
-static void list_options(const fg_evidence_search *s, bool named, bool *wanted) {
-  for (size_t o = 0; o < s->option_count; o++) {
-    const fg_evidence_option *option = &s->options[o];
-    if (named && !fg_effect_bears_name(option->effect)) continue;
-    memset(wanted + option->first, true, option->sets * option->each);
-  }
+static bool may_join_any(const fg_evidence_model *const *models, size_t count,
+                         const fg_evidence_option *option, fg_evidence_may_join *may_join) {
+  for (size_t m = 0; m < count; m++)
+    if (may_join(models[m], option)) return true;
+  return false;
 }
 
 fg_status fg_evidence_find_products_ahead(fg_context *ctx, fg_evidence_search *s,
                                           const fg_evidence_model *const *models, size_t count,
-                                          bool named) {
+                                          bool named, fg_evidence_may_join *may_join) {
   size_t all = s->problem.count + 1;
   column_list list = {0};
   bool *wanted = NULL;
@@ -43,7 +42,12 @@ fg_status fg_evidence_find_products_ahead(fg_context *ctx, fg_evidence_search *s
   for (size_t m = 0; m < count; m++)
     for (size_t k = 0; k < models[m]->parts; k++)
       add_columns(&list, models[m]->part[k]->first, models[m]->part[k]->count);
-  list_options(s, named, wanted);
+  for (size_t o = 0; o < s->option_count; o++) {
+    const fg_evidence_option *option = &s->options[o];
+    if (named && !fg_effect_bears_name(option->effect)) continue;
+    if (may_join_any(models, count, option, may_join))
+      memset(wanted + option->first, true, option->sets * option->each);
+  }
   FG_TRY_EXIT(fg_evidence_find_products(ctx, &s->problem, list.column, list.count, wanted,
                                         s->request.threads));
 exit:

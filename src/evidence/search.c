@@ -340,7 +340,7 @@ static fg_status extend_front(fg_context *ctx, fg_evidence_search *s, const size
   const fg_evidence_model *models[NAMED_FRONT + RIVAL_FRONT];
   for (size_t k = 0; k < count; k++)
     models[k] = &s->models[front[k]];
-  FG_TRY(fg_evidence_find_products_ahead(ctx, s, models, count, false));
+  FG_TRY(fg_evidence_find_products_ahead(ctx, s, models, count, false, may_join));
   for (size_t k = 0; k < count; k++) {
     fg_evidence_model model = *models[k];
     FG_TRY(extend_model(ctx, s, &model, false));
@@ -410,7 +410,7 @@ static fg_status exchange_parts(fg_context *ctx, fg_evidence_search *s) {
   for (int round = 0; round < EXCHANGE_ROUNDS; round++) {
     list_rests(s, rest, &rests);
     if (done < rests)
-      FG_TRY(fg_evidence_find_products_ahead(ctx, s, models + done, rests - done, true));
+      FG_TRY(fg_evidence_find_products_ahead(ctx, s, models + done, rests - done, true, may_join));
     for (; done < rests; done++)
       FG_TRY(extend_model(ctx, s, &rest[done], true));
     fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
