@@ -42,14 +42,14 @@ def single(folder, name):
 
 
 def pair(folder):
-    """Two scans of one rough foil, turned in between."""
+    """Two scans of one rough foil, turned in between, with a ripple of the carriage."""
     rng, spec = np.random.default_rng(SEED), sample("rough")
     foil = {**spec["foils"][0], "radius_mm": list(BUMP_RADIUS_MM * (1 + SPRINGBACK + SPRINGBACK_SD * rng.standard_normal(BUMPS)))}
     del foil["radius_springback"]
     scans = []
     for k in range(2):
         foil_here = {**foil, "rotate_deg": foil["rotate_deg"] + TURN_DEG * k}
-        scans.append(draw_scan(folder, f"pair_{k}", {**spec, "seed": SEED + k, "foils": [foil_here]}))
+        scans.append(draw_scan(folder, f"pair_{k}", {**spec, "seed": SEED + k, "foils": [foil_here], "effects": sample("ripple")["effects"]}))
     return ["loop", "--same-foil", *scans]
 
 
@@ -107,7 +107,7 @@ Made by `tests/bench/loop_speed.py` with {benchlib.program_version()} on {benchl
 
 Each loop runs once unseen and {rounds} times more. Wall time holds everything, from the file to the report (JSON); processor seconds are
 those of all threads together. The scans are renders of `samples/render/` (nine bumps, 4800 dpi), the two of one foil turned by
-{TURN_DEG}° in between. In the tables two columns and the order move the response; the model declares one of the columns.
+{TURN_DEG}° in between and with the ripple of `ripple.json`. In the tables two columns and the order move the response; the model declares one of the columns.
 
 """)
         file.write(benchlib.table(["input", "median, s", "longest, s", "goal, s", "processor, s", "peak memory, MiB", "verdict"], rows))
