@@ -40,6 +40,9 @@ fg_loop_accepts fg_basis_accepts_periodic, fg_basis_accepts_orders;
 fg_loop_columns fg_basis_periodic_columns;
 fg_loop_basis fg_basis_periodic;
 fg_loop_starts fg_basis_periodic_starts, fg_basis_order_starts;
+/* Fills the sine and the cosine of a period over a coordinate, from its lowest place on: 2 × rows.
+ */
+void fg_basis_wave(size_t rows, const fg_loop_coordinate *at, double period, double *columns);
 
 /* Of a reversal, in cycle_bases.c. */
 fg_loop_accepts fg_basis_accepts_hysteresis;

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "effect/columns.h"
 
+#include <math.h>
+
+#include "core/sincos.h"
+
 enum { POWERS = 3 };
 
 static void powers(double u, int axis, fg_point *d) {
@@ -36,11 +40,54 @@ static size_t midline_columns(const fg_edge_fit *edge_fit, const fg_effect *effe
   return count;
 }
 
+/* Rows whose angles are taken together. */
+enum { WAVE_ROWS = 64 };
+
+/* Fills a wave's angles at the middles of rows, and those from there to a row's places, across and
+ * along the strip. */
+static void wave_angles(const fg_edge_fit_row *rows, size_t count, const fg_effect *effect,
+                        double period_mm, double *angles) {
+  const double turn = 2 * M_PI / period_mm;
+  for (size_t i = 0; i < count; i++) {
+    const fg_edge_fit_row *row = &rows[i];
+    const fg_point tangent = {-row->normal.y, row->normal.x};
+    angles[i] = turn * fg_point_along(row->ideal, effect->axis);
+    angles[count + i] = turn * row->half_width_mm * fg_point_along(row->normal, effect->axis);
+    angles[2 * count + i] = turn * row->spread_mm * fg_point_along(tangent, effect->axis);
+  }
+}
+
+/* As for other effects, without a sine at every place: the mean of sin w(y ± a ± b) over the signs,
+ * and so over a row's places, is sin(w y) cos(w a) cos(w b). */
+static size_t wave_columns(const fg_edge_fit *edge_fit, const fg_effect *effect,
+                           const double *shape, double *columns) {
+  double angles[3 * WAVE_ROWS], sine[3 * WAVE_ROWS], cosine[3 * WAVE_ROWS];
+  size_t rows = edge_fit->row_count;
+  for (size_t from = 0; from < rows; from += WAVE_ROWS) {
+    size_t count = rows - from < WAVE_ROWS ? rows - from : WAVE_ROWS;
+    wave_angles(edge_fit->rows + from, count, effect, shape[0], angles);
+    fg_sincos(3 * count, angles, sine, cosine);
+    for (size_t i = 0; i < count; i++) {
+      const fg_point n = edge_fit->rows[from + i].normal;
+      double share = -(effect->wave.x * n.x + effect->wave.y * n.y);
+      share *= cosine[count + i] * cosine[2 * count + i];
+      columns[from + i] = share * sine[i];
+      columns[rows + from + i] = share * cosine[i];
+    }
+  }
+  return effect->columns;
+}
+
+static bool is_wave(const fg_effect *effect) {
+  return effect->wave.x != 0 || effect->wave.y != 0;
+}
+
 /* The true position is d beyond the nominal one: along the normal the nominal lacks d. */
 size_t fg_effect_columns(const fg_edge_fit *edge_fit, const fg_effect *effect, const double *shape,
                          double *columns) {
   if (effect->width) return 0;
   if (effect->midline) return midline_columns(edge_fit, effect, shape, columns);
+  if (is_wave(effect)) return wave_columns(edge_fit, effect, shape, columns);
   fg_point at[FG_EDGE_FIT_PLACES], d[FG_FIELD_COLUMNS];
   size_t count = effect->columns, rows = edge_fit->row_count;
   for (size_t i = 0; i < rows; i++) {

@@ -2,6 +2,7 @@
 /* Bases over places: cycles over an order, a column, a base period that is known; reversal. */
 #include <math.h>
 
+#include "core/sincos.h"
 #include "effect/bases.h"
 
 static const double two_pi = 6.28318530717958647692;
@@ -37,17 +38,28 @@ size_t fg_basis_periodic_columns(const fg_loop_problem *problem,
   return 2 * count;
 }
 
+/* Angles that are taken together. */
+enum { ANGLES = 64 };
+
+void fg_basis_wave(size_t rows, const fg_loop_coordinate *at, double period, double *columns) {
+  double phase[ANGLES];
+  for (size_t from = 0; from < rows; from += ANGLES) {
+    size_t count = rows - from < ANGLES ? rows - from : ANGLES;
+    double *sine = columns + from;
+    for (size_t i = 0; i < count; i++)
+      phase[i] = two_pi * (at->value[from + i] - at->low) / period;
+    fg_sincos(count, phase, sine, sine + rows);
+    for (size_t i = 0; i < count; i++)
+      if (fabs(sine[i]) < FG_BASIS_ROUNDING) sine[i] = 0;
+  }
+}
+
 void fg_basis_periodic(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                        const double *shape, double *columns) {
   const fg_loop_coordinate *at = fg_basis_first(problem, candidate);
   for (size_t k = 1; k <= FG_LOOP_ORDER_MAX; k++) {
     if (!fg_loop_has_order(candidate, k)) continue;
-    for (size_t i = 0; i < problem->rows; i++) {
-      double phase = two_pi * (double)k * (at->value[i] - at->low) / shape[0];
-      double sine = sin(phase);
-      columns[i] = fabs(sine) < FG_BASIS_ROUNDING ? 0 : sine;
-      columns[problem->rows + i] = cos(phase);
-    }
+    fg_basis_wave(problem->rows, at, shape[0] / (double)k, columns);
     columns += 2 * problem->rows;
   }
 }

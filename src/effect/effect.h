@@ -125,6 +125,9 @@ typedef struct fg_effect {
   const char *shape_name[FG_FIELD_SHAPES], *shape_symbol[FG_FIELD_SHAPES]; /* mm; for people */
   fg_effect_shape shape_is[FG_FIELD_SHAPES];
   fg_field_basis *glass;
+  fg_point
+      wave; /* of a glass effect whose columns are the sine and the cosine of a wave over `axis`
+               with the first shape as its period: the direction that they move; else 0 */
   fg_effect_midline *midline;
   fg_effect_width *width;
 

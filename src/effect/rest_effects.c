@@ -6,8 +6,6 @@
 #include "effect/bases.h"
 #include "effect/table_effects.h"
 
-static const double two_pi = 6.28318530717958647692;
-
 static size_t outlier_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
   (void)problem;
   return candidate->effect->outlier == FG_LOOP_EXCHANGED_ROWS ? 1 : candidate->rows;
@@ -138,12 +136,7 @@ static size_t two_columns(const fg_loop_problem *problem, const fg_loop_candidat
 static void wave_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                        const double *shape, double *columns) {
   const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
-  for (size_t i = 0; i < problem->rows; i++) {
-    double phase = two_pi * (at->value[i] - at->low) / shape[0];
-    double sine = sin(phase);
-    columns[i] = fabs(sine) < FG_BASIS_ROUNDING ? 0 : sine;
-    columns[problem->rows + i] = cos(phase);
-  }
+  fg_basis_wave(problem->rows, at, shape[0], columns);
 }
 
 /* Maximum number of waves over a coordinate that is no order, where long cycles are not expected.

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/select.h"
 #include "evidence/fit.h"
+#include "evidence/products_ahead.h"
 #include "evidence/refit.h"
 #include "evidence/unnamed.h"
 
@@ -209,21 +210,6 @@ static void list_extensions(const fg_evidence_model *from, bool named, extending
   }
 }
 
-/* Finds what threads would otherwise write to one place: products with the columns of the model. */
-static fg_status find_products(fg_context *ctx, const extending *e) {
-  fg_evidence_problem *p = &e->search->problem;
-  bool *wanted = NULL;
-  FG_TRY(fg_memory_allocate(ctx, p->count + 1, sizeof *wanted, (void **)&wanted));
-  for (size_t i = 0; i < e->count; i++) {
-    const fg_evidence_option *option = e->list[i].option;
-    memset(wanted + option->first, true, option->sets * option->each);
-  }
-  fg_status status = fg_evidence_find_products(ctx, p, e->factor->column, e->factor->count, wanted,
-                                               e->search->request.threads);
-  free(wanted);
-  return status;
-}
-
 static fg_status fit_one(fg_context *ctx, void *shared, size_t item) {
   const extending *e = shared;
   fg_evidence_extension *one = &e->list[item];
@@ -256,6 +242,8 @@ static fg_status keep_extension(fg_context *ctx, fg_evidence_search *s,
   return FG_OK;
 }
 
+/* The products of the model's columns with those of the options are known: threads would otherwise
+ * write them to one place. */
 static fg_status extend_model(fg_context *ctx, fg_evidence_search *s, const fg_evidence_model *from,
                               bool named) {
   fg_evidence_extension list[FG_EVIDENCE_OPTIONS];
@@ -265,7 +253,6 @@ static fg_status extend_model(fg_context *ctx, fg_evidence_search *s, const fg_e
   fg_status status = FG_OK;
   FG_TRY(fg_evidence_factor_open(ctx, &s->problem, &s->scatter, from, &factor));
   list_extensions(from, named, &e);
-  FG_TRY_EXIT(find_products(ctx, &e));
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, e.count, fit_one, &e));
   for (size_t i = 0; i < e.count; i++)
     e.gain_max = fmax(e.gain_max, list[i].evidence - factor.evidence);
@@ -338,6 +325,29 @@ static size_t choose_front(const fg_evidence_search *s, size_t parts, size_t *fr
   return count;
 }
 
+/* Fits a model's parts together and finds its scatter, before it is extended. */
+static fg_status prepare_model(fg_context *ctx, fg_evidence_search *s, fg_evidence_model *model) {
+  if (model->parts > 1 && fg_evidence_is_named(model))
+    FG_TRY(fg_evidence_refit_model(ctx, s, model));
+  FG_TRY(find_scatter(ctx, s, model));
+  set_score(s, model);
+  return FG_OK;
+}
+
+/* Extends models of a round; their extensions have one part more and take no place of theirs. */
+static fg_status extend_front(fg_context *ctx, fg_evidence_search *s, const size_t *front,
+                              size_t count) {
+  const fg_evidence_model *models[NAMED_FRONT + RIVAL_FRONT];
+  for (size_t k = 0; k < count; k++)
+    models[k] = &s->models[front[k]];
+  FG_TRY(fg_evidence_find_products_ahead(ctx, s, models, count, false, may_join));
+  for (size_t k = 0; k < count; k++) {
+    fg_evidence_model model = *models[k];
+    FG_TRY(extend_model(ctx, s, &model, false));
+  }
+  return FG_OK;
+}
+
 static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
   size_t front[NAMED_FRONT + RIVAL_FRONT], rounds = ROUNDS + (s->scatter.gauges > 0);
   for (size_t parts = 0; parts < rounds; parts++) {
@@ -345,15 +355,9 @@ static fg_status run_rounds(fg_context *ctx, fg_evidence_search *s) {
     for (size_t m = 0; m < s->count; m++)
       before = fmax(before, s->models[m].score);
     size_t count = choose_front(s, parts, front);
-    for (size_t k = 0; k < count; k++) {
-      fg_evidence_model model = s->models[front[k]];
-      if (parts > 1 && fg_evidence_is_named(&model))
-        FG_TRY(fg_evidence_refit_model(ctx, s, &model));
-      FG_TRY(find_scatter(ctx, s, &model));
-      set_score(s, &model);
-      s->models[front[k]] = model;
-      FG_TRY(extend_model(ctx, s, &model, false));
-    }
+    for (size_t k = 0; k < count; k++)
+      FG_TRY(prepare_model(ctx, s, &s->models[front[k]]));
+    FG_TRY(extend_front(ctx, s, front, count));
     fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);
     if (parts && s->models[1].score <= before + 1) break;
   }
@@ -399,9 +403,14 @@ static void list_rests(const fg_evidence_search *s, fg_evidence_model *rest, siz
  * beside the rest: what leads alone need not be of the best pair, nor is its shape the same. */
 static fg_status exchange_parts(fg_context *ctx, fg_evidence_search *s) {
   fg_evidence_model rest[EXCHANGES];
+  const fg_evidence_model *models[EXCHANGES];
   size_t rests = 0, done = 0;
+  for (size_t k = 0; k < EXCHANGES; k++)
+    models[k] = &rest[k];
   for (int round = 0; round < EXCHANGE_ROUNDS; round++) {
     list_rests(s, rest, &rests);
+    if (done < rests)
+      FG_TRY(fg_evidence_find_products_ahead(ctx, s, models + done, rests - done, true, may_join));
     for (; done < rests; done++)
       FG_TRY(extend_model(ctx, s, &rest[done], true));
     fg_sort_items(s->models + 1, s->count - 1, sizeof *s->models, compare_models);

@@ -317,12 +317,12 @@ static size_t burr_of_disc(const fg_edge_fit *edge_fit, const fg_edge_fit_row *r
     }                                                                                              \
   }
 
-#define LENGTH_ROW(name, over, thing, basis, count, from, tried)                                   \
+#define LENGTH_ROW(name, over, thing, basis, count, wave_x, wave_y, from, tried)                   \
   {                                                                                                \
     .id = name, .sought = FG_EFFECT_PLACED, .coordinate = (over) ? FG_EFFECT_Y : FG_EFFECT_X,      \
     .moves = thing, .columns = count, .shapes = 1, .shape_is = {FG_EFFECT_LENGTH}, .glass = basis, \
-    .axis = over, .start = from, .starts = tried, .size_from = "a pixel of 2400 dpi; assumed",     \
-    .size_um = {                                                                                   \
+    .wave = {wave_x, wave_y}, .axis = over, .start = from, .starts = tried,                        \
+    .size_from = "a pixel of 2400 dpi; assumed", .size_um = {                                      \
       10                                                                                           \
     }                                                                                              \
   }
@@ -342,12 +342,12 @@ const fg_effect fg_unnamed_effects[FG_UNNAMED_EFFECTS + 1] = {
     ROW("scan.x.dy with a jump", 0, "y", y_broken_over_x, start_in_x),
     ROW("scan.y.dx with a jump", 1, "x", x_broken_over_y, start_in_y),
     ROW("scan.y.dy with a jump", 1, "y", y_broken_over_y, start_in_y),
-    LENGTH_ROW("scan.x.dx as a decay", 0, "x", x_decays_over_x, 1, length_in_x, STARTS),
-    LENGTH_ROW("scan.x.dy as a decay", 0, "y", y_decays_over_x, 1, length_in_x, STARTS),
-    LENGTH_ROW("scan.y.dx as a decay", 1, "x", x_decays_over_y, 1, length_in_y, STARTS),
-    LENGTH_ROW("scan.x.dx as a wave", 0, "x", x_waves_over_x, 2, period_in_x, PERIODS),
-    LENGTH_ROW("scan.x.dy as a wave", 0, "y", y_waves_over_x, 2, period_in_x, PERIODS),
-    LENGTH_ROW("scan.y.dx as a wave", 1, "x", x_waves_over_y, 2, period_in_y, PERIODS),
+    LENGTH_ROW("scan.x.dx as a decay", 0, "x", x_decays_over_x, 1, 0, 0, length_in_x, STARTS),
+    LENGTH_ROW("scan.x.dy as a decay", 0, "y", y_decays_over_x, 1, 0, 0, length_in_x, STARTS),
+    LENGTH_ROW("scan.y.dx as a decay", 1, "x", x_decays_over_y, 1, 0, 0, length_in_y, STARTS),
+    LENGTH_ROW("scan.x.dx as a wave", 0, "x", x_waves_over_x, 2, 1, 0, period_in_x, PERIODS),
+    LENGTH_ROW("scan.x.dy as a wave", 0, "y", y_waves_over_x, 2, 0, 1, period_in_x, PERIODS),
+    LENGTH_ROW("scan.y.dx as a wave", 1, "x", x_waves_over_y, 2, 1, 0, period_in_y, PERIODS),
     BAND_ROW("scan.x.dx as a wave of changing size", 0, "x", x_band_over_x, band_in_x,
              BAND_PERIODS),
     BAND_ROW("scan.x.dy as a wave of changing size", 0, "y", y_band_over_x, band_in_x,

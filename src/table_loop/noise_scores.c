@@ -8,7 +8,6 @@
 #include "core/memory.h"
 #include "effect/table_effects.h"
 #include "table_loop/between.h"
-#include "table_loop/spread_likelihood.h"
 
 /* Variance over squared mean of a normal residual's size (pi / 2 - 1); an exponential one has 1. */
 #define SIZE_DISPERSION 0.5707963267948966
@@ -57,8 +56,14 @@ exit:
   return status;
 }
 
-static fg_status open_spread(fg_context *ctx, const fg_engine_training *training,
+static bool has_few_rows(const fg_engine_noise_scores *scores) {
+  return scores->training->n <= FG_ENGINE_SPREAD_ROWS && !scores->training->scale &&
+         fg_engine_independent(scores->noise);
+}
+
+static fg_status open_spread(fg_context *ctx, const fg_engine_noise_scores *scores,
                              const fg_loop_candidate *candidate, fg_engine_spread *spread) {
+  const fg_engine_training *training = scores->training;
   size_t n = training->n, count = fg_engine_candidate_columns(training->problem, candidate);
   double *columns = NULL;
   fg_status status = FG_OK;
@@ -69,7 +74,9 @@ static fg_status open_spread(fg_context *ctx, const fg_engine_training *training
   FG_TRY_EXIT(fg_engine_gather(ctx, training, candidate, (double[FG_LOOP_SHAPES]){0}, columns));
   if (count == 1 && !fg_loop_spread_by_levels(training->problem, candidate)) {
     spread->z = columns;
-    return FG_OK;
+    return has_few_rows(scores)
+               ? fg_engine_spread_grid_open(ctx, scores->null, columns, &spread->grid)
+               : FG_OK;
   }
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *spread->level, (void **)&spread->level));
   for (size_t k = 0; k < count; k++)
@@ -92,7 +99,7 @@ fg_status fg_engine_noise_scores_open(fg_context *ctx, const fg_engine_training 
   for (size_t c = 0; c < candidates; c++)
     FG_TRY_EXIT(fg_engine_is_levels(&candidate[c])
                     ? open_levels(ctx, scores, &candidate[c], &scores->spread[c])
-                    : open_spread(ctx, training, &candidate[c], &scores->spread[c]));
+                    : open_spread(ctx, scores, &candidate[c], &scores->spread[c]));
 exit:
   if (status != FG_OK) fg_engine_noise_scores_close(scores);
   return status;
@@ -104,6 +111,7 @@ void fg_engine_noise_scores_close(fg_engine_noise_scores *scores) {
     free(scores->spread[c].level);
     free(scores->spread[c].unit);
     free(scores->spread[c].stratum);
+    fg_engine_spread_grid_close(&scores->spread[c].grid);
   }
   free(scores->spread);
   *scores = (fg_engine_noise_scores){0};
@@ -188,11 +196,6 @@ static double levels_score(const fg_engine_noise_scores *scores, const fg_engine
   return fg_engine_deviate(ratio, (double)spread->rank, (double)dof);
 }
 
-static bool has_few_rows(const fg_engine_noise_scores *scores) {
-  return scores->training->n <= FG_ENGINE_SPREAD_ROWS && !scores->training->scale &&
-         fg_engine_independent(scores->noise);
-}
-
 static double score_of(const fg_engine_noise_scores *scores, size_t c, const double *y,
                        const double *white, const double *size) {
   const fg_engine_spread *spread = &scores->spread[c];
@@ -200,7 +203,7 @@ static double score_of(const fg_engine_noise_scores *scores, size_t c, const dou
   if (spread->unit) return levels_score(scores, spread, white);
   double z = spread_score(scores->training, spread, size);
   if (!isfinite(z) || !has_few_rows(scores)) return z;
-  const fg_engine_spread_rows rows = {spread->level, spread->z};
+  const fg_engine_spread_rows rows = {spread->level, spread->z, &spread->grid};
   return sqrt(fg_engine_spread_gain(scores->null, rows, y));
 }
 

@@ -3,14 +3,15 @@
 #ifndef FG_TABLE_LOOP_NOISE_SCORES_H
 #define FG_TABLE_LOOP_NOISE_SCORES_H
 
-#include "table_loop/engine.h"
+#include "table_loop/spread_likelihood.h"
 
 typedef struct fg_engine_spread {
   bool serial;
   size_t columns;
-  double *z;     /* n: standardised coordinate of a slope */
-  size_t *level; /* n: index of a level, 0 .. columns */
-  double *unit;  /* of random levels: rank × n, orthonormal beside the null */
+  double *z;                  /* n: standardised coordinate of a slope */
+  fg_engine_spread_grid grid; /* where rows are few */
+  size_t *level;              /* n: index of a level, 0 .. columns */
+  double *unit;               /* of random levels: rank × n, orthonormal beside the null */
   size_t rank;
   bool between; /* of levels that hold groups: tested between these */
   double

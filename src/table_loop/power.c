@@ -116,6 +116,18 @@ static fg_status set_effect(fg_context *ctx, power_workspace *power, size_t vers
   return FG_OK;
 }
 
+/* Versions of one candidate, which lie together. */
+typedef struct versions_of {
+  size_t first, count;
+} versions_of;
+
+static versions_of find_versions(const fg_score_workspace *workspace, size_t c) {
+  versions_of own = {workspace->versions, 0};
+  for (size_t v = 0; v < workspace->versions; v++)
+    if (workspace->version[v].candidate == c && !own.count++) own.first = v;
+  return own;
+}
+
 typedef struct draw_sums {
   double null, with; /* weighted residual sums: without the candidate, with its best version */
   double own;        /* with over without, between groups */
@@ -129,16 +141,15 @@ static double squares(const double *e, const double *f, double a, size_t from, s
 }
 
 /* Of noise + a f at one noise model. */
-static draw_sums residual_sums(const power_workspace *power, size_t c, size_t b, size_t j,
+static draw_sums residual_sums(const power_workspace *power, versions_of own, size_t b, size_t j,
                                double a) {
   const fg_score_workspace *workspace = power->workspace;
   const double *e = power->noise[j] + b * (power->width + 1), *f = power->effect[j];
   double rss = e[power->width] + 2 * a * power->cross[j][b] + a * a * f[power->width], gain = 0;
   rss -= squares(e, f, a, 0, workspace->rank);
-  for (size_t v = 0; v < workspace->versions; v++) {
+  for (size_t v = own.first; v < own.first + own.count; v++) {
     const fg_engine_version *version = &workspace->version[v];
-    if (version->candidate == c)
-      gain = fmax(gain, squares(e, f, a, workspace->rank + version->first, version->rank));
+    gain = fmax(gain, squares(e, f, a, workspace->rank + version->first, version->rank));
   }
   double between = squares(e, f, a, workspace->rank + workspace->columns, workspace->between_rank);
   return (draw_sums){rss * workspace->weight[j],
@@ -146,15 +157,16 @@ static draw_sums residual_sums(const power_workspace *power, size_t c, size_t b,
                      between > 0 ? fmax(1 - gain / between, 1e-12) : 1};
 }
 
-static double share_found(const power_workspace *power, size_t c, const fg_engine_version *version,
-                          double critical, double a) {
+static double share_found(const power_workspace *power, versions_of own, double critical,
+                          double a) {
   const fg_score_workspace *workspace = power->workspace;
+  const fg_engine_version *version = &workspace->version[own.first + own.count / 2];
   double k = fg_engine_version_dof(workspace, version);
   size_t found = 0;
   for (size_t b = 0; b < DRAWS; b++) {
     draw_sums best = {INFINITY, INFINITY, 1};
     for (size_t j = 0; j < workspace->noises; j++) {
-      draw_sums one = residual_sums(power, c, b, j, a);
+      draw_sums one = residual_sums(power, own, b, j, a);
       best.null = fmin(best.null, one.null);
       if (!(one.with < best.with)) continue;
       best.with = one.with;
@@ -169,23 +181,19 @@ static double share_found(const power_workspace *power, size_t c, const fg_engin
 static fg_status one_amplitude(fg_context *ctx, power_workspace *power, size_t c, double critical,
                                double *amplitude) {
   const fg_score_workspace *workspace = power->workspace;
-  size_t first = workspace->versions, count = 0;
-  for (size_t v = 0; v < workspace->versions; v++)
-    if (workspace->version[v].candidate == c) {
-      if (!count++) first = v;
-    }
-  size_t middle = first + count / 2;
+  versions_of own = find_versions(workspace, c);
+  size_t middle = own.first + own.count / 2;
   *amplitude = NAN;
-  if (count == 0) return FG_OK;
+  if (own.count == 0) return FG_OK;
   const fg_engine_version *version = &workspace->version[middle];
   double k = fg_engine_version_dof(workspace, version);
   if (version->rank == 0 || k + 2 > fg_engine_version_whole(workspace, version)) return FG_OK;
   FG_TRY(set_effect(ctx, power, middle));
   double low = 1e-3, high = 1e3;
-  if (share_found(power, c, version, critical, high) < wanted) return FG_OK;
+  if (share_found(power, own, critical, high) < wanted) return FG_OK;
   for (int i = 0; i < HALVINGS; i++) {
     double between = sqrt(low * high);
-    if (share_found(power, c, version, critical, between) < wanted)
+    if (share_found(power, own, critical, between) < wanted)
       low = between;
     else
       high = between;

@@ -264,7 +264,10 @@ static void a_small_gain_of_a_spread_is_not_zero(void **state) {
     for (int k = -STEPS; k <= STEPS; k++)
       best = fmax(best, likelihood_of_slope(z, y, k / 1000.0));
     const fg_engine_span null = {.n = RUNS, .rank = 1, .basis = basis, .kept = kept};
-    double gain = fg_engine_spread_gain(&null, (fg_engine_spread_rows){.z = z}, y);
+    fg_engine_spread_grid grid;
+    assert_int_equal(fg_engine_spread_grid_open(NULL, &null, z, &grid), FG_OK);
+    double gain = fg_engine_spread_gain(&null, (fg_engine_spread_rows){.z = z, .grid = &grid}, y);
+    fg_engine_spread_grid_close(&grid);
     assert_true(fabs(gain - (best - likelihood_of_slope(z, y, 0))) < 0.002);
   }
 }
