@@ -55,6 +55,13 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
   return fg_query_end(ctx, &query, "reading the cards");
 }
 
+/* True where the ± holds the default for an unknown scanner, which another scan does not change. */
+static bool is_scale_unknown(const fg_inspection *station, const card *newest) {
+  const fg_design *design = &fg_part_recipe_of_setup(station, newest->setup).lot->design;
+  return design->calibration.stated &&
+         !strcmp(design->calibration.certificate, fg_calibration_of_flatbed().certificate);
+}
+
 static const char *next_step(const card *newest) {
   if (!strcmp(newest->kind, "unfinished")) return "Scan the foil again.";
   if (!strcmp(newest->kind, "foreign"))
@@ -107,7 +114,7 @@ static void write_newest_call(FILE *out, const fg_inspection *station, const car
   fputs("<br>", out);
   fg_page_time(out, newest->at);
   write_traceability(out, station, newest);
-  fputs("</span></div>\n<p class=\"next\">", out);
+  fprintf(out, "</span></div>\n<p class=\"next%s\">", strcmp(look.style, "pass") ? "" : " calm");
   if (newest->message[0]) {
     fg_html_name(out, newest->path);
     fputc(' ', out);
@@ -115,6 +122,11 @@ static void write_newest_call(FILE *out, const fg_inspection *station, const car
     fputs(". ", out);
   }
   fg_html_text(out, next_step(newest));
+  if (newest->foils && !newest->withheld[0] && !strcmp(newest->verdict, "cannot_tell") &&
+      strcmp(newest->kind, "known") != 0 && is_scale_unknown(station, newest))
+    fputs(" If it stays so, the scanner's unknown scale decides (± 0.6 % of a length): a model of "
+          "the scanner makes it smaller.",
+          out);
   fputs("</p>\n", out);
 }
 
@@ -241,8 +253,11 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
                  &query);
   fg_query_integer(&query, newest);
   fg_query_integer(&query, CARDS);
-  fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
-  while (fg_query_row(&query)) {
+  bool any = false;
+  for (; fg_query_row(&query); any = true) {
+    if (!any)
+      fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">",
+            out);
     const fg_card_style look = fg_page_card_style(
         fg_query_get_text(&query, 2), fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
     fputs("<li", out);
@@ -257,7 +272,7 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
     fg_page_time(out, fg_query_get_integer(&query, 0));
     fputs("</span></li>\n", out);
   }
-  fputs("</ul></section>\n", out);
+  if (any) fputs("</ul></section>\n", out);
   return fg_query_end(ctx, &query, "reading the cards");
 }
 

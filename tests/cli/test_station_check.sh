@@ -102,11 +102,14 @@ assert "CHANGED" in page()
 assert post({"form": token, "id": str(int(check) - 1)}) == 404
 assert post({"form": token, "id": check}) == 200
 text = page()
+with open(sys.argv[1] + "/scanner.html", "w") as file:
+    file.write(urllib.request.urlopen(base + "scanner").read().decode())
 assert "IN ORDER" in text and "This check is the baseline" in text and "as the new baseline" not in text, text
 P
 kill "$station"
 wait "$station" 2>/dev/null || true
 station=
+said=$("$(dirname "$program")/tests/missing_words" de "$work/scanner.html") || fail "no German words: $said"
 plate 12 "$work/in/check_like_it.png" "$plain, \"gamma\": 1.8"
 once
 [ "$(newest changes)" = "" ] || fail "as accepted, and a change: $(newest changes)"
