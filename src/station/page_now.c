@@ -69,7 +69,10 @@ static const char *next_step(const card *newest) {
   if (!strcmp(newest->kind, "unreadable") && fg_station_is_scanned(newest->path))
     return "See to the scanner, the glass and the foil, and scan again.";
   if (!strcmp(newest->kind, "unreadable")) return "Look at the foil and the glass, and scan again.";
-  if (!strcmp(newest->kind, "check")) return "Go on with foils.";
+  if (!strcmp(newest->kind, "check"))
+    return fg_page_check_passed(newest->message)
+               ? "Go on with foils."
+               : "Do not go on with foils: the page Scanner says what to do.";
   if (!strcmp(newest->kind, "known")) return "Nothing is new: go on with the next foil.";
   if (!strcmp(newest->kind, "duplicate")) return "Put this foil on the glass and scan it.";
   if (newest->withheld[0]) return newest->withheld;
@@ -104,8 +107,8 @@ static void write_traceability(FILE *out, const fg_inspection *station, const ca
 }
 
 static void write_newest_call(FILE *out, const fg_inspection *station, const card *newest) {
-  const fg_card_style look =
-      fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  const fg_card_style look = fg_page_card_style(newest->kind, newest->message, newest->verdict,
+                                                newest->withheld[0] != '\0');
   fprintf(out, "<div class=\"call %s%s\"", look.style,
           strlen(look.words) > LARGE_LETTERS ? " long" : "");
   write_arrival(out, newest->id, look.words);
@@ -258,8 +261,9 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
     if (!any)
       fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">",
             out);
-    const fg_card_style look = fg_page_card_style(
-        fg_query_get_text(&query, 2), fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
+    const fg_card_style look =
+        fg_page_card_style(fg_query_get_text(&query, 2), fg_query_get_text(&query, 3),
+                           fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
     fputs("<li", out);
     write_arrival(out, fg_query_get_integer(&query, 7), look.words);
     fprintf(out, "><span class=\"tag %s\">%s</span><span>", look.style, look.words);
@@ -293,8 +297,8 @@ static fg_status write_scan(fg_context *ctx, fg_inspection *station, sqlite3 *re
 }
 
 static void write_before(FILE *out, const card *newest) {
-  const fg_card_style look =
-      fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  const fg_card_style look = fg_page_card_style(newest->kind, newest->message, newest->verdict,
+                                                newest->withheld[0] != '\0');
   fputs("<p class=\"note\"", out);
   write_arrival(out, newest->id, look.words);
   fputs(">Before it: ", out);

@@ -90,6 +90,10 @@ page = lambda: plain(urllib.request.urlopen(base + "scanner").read().decode())
 wait_until(lambda: 'name="form"' in page())
 text = page()
 assert "CHANGED" in text
+now = plain(urllib.request.urlopen(base).read().decode())
+assert ">CHECK FAILED<" in now and "Do not go on with foils" in now and "Go on with foils." not in now, now
+with open(sys.argv[1] + "/changed.html", "w") as file:
+    file.write(urllib.request.urlopen(base + "scanner").read().decode() + urllib.request.urlopen(base).read().decode())
 token = re.search(r'name="form" value="(\w+)"', text).group(1)
 check = re.search(r'name="id" value="(\d+)"', text).group(1)
 def post(fields):
@@ -109,7 +113,7 @@ P
 kill "$station"
 wait "$station" 2>/dev/null || true
 station=
-said=$("$(dirname "$program")/tests/missing_words" de "$work/scanner.html") || fail "no German words: $said"
+said=$("$(dirname "$program")/tests/missing_words" de "$work/scanner.html" "$work/changed.html") || fail "no German words: $said"
 plate 12 "$work/in/check_like_it.png" "$plain, \"gamma\": 1.8"
 once
 [ "$(newest changes)" = "" ] || fail "as accepted, and a change: $(newest changes)"
