@@ -102,12 +102,15 @@ SCANS = {
     "a.png": scan(3, -75, [{"id": "scan.scale_y", "value": 0.001}]), "b.png": scan(4, 15, [{"id": "scan.scale_y", "value": 0.001}]),
     "curve.png": scan(11, -75, [CURVE], foil=PLACED, width_px=4200, height_px=4200),
     "residue.png": scan(12, -75, [CURVE, RIPPLE], foil=PLACED, width_px=4200, height_px=4200),
+    "board.png": {"seed": 5, "scanner": {"dpi": 1200}, "grids": [{"marks": "dots", "centre_mm": [15, 15], "pitch_mm": 2.5, "columns": 10,
+                                                                  "rows": 10, "mark_mm": 1}], "effects": [{"id": "scan.shear", "value": 0.001}]},
     "decay.png": scan(9, -70, foil=dict(FOIL, radius_mm=[3.60, 3.50, 3.45, 3.43, 3.42, 3.415, 3.41, 3.41, 3.41])),
 }
 
 # Other files: JSON of a value that is no text, text of more than one line as it is, else a file of the repository.
 FILES = {
     "limits.json": {"schema": "foilgauge/design/1", "name": "gen2", "bump_count": 9, "tolerances": LIMITS},
+    "board.json": {"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_mm": 2.5, "u_pitch_mm": 0.0025},
     "sinusoidal.json": {"schema": "foilgauge/design/1", "name": "sinus", "form": "sinusoidal"},
     "strip.json": "samples/top_foil_design.json",
     "plate.json": {"schema": "foilgauge/design/1", "name": "pins", "form": "discs",
@@ -145,6 +148,8 @@ PAGES = [
     Page("measure_sinusoidal", "measure sinusoidal.png --design sinusoidal.json"),
     Page("measure_strip", "measure strip.png --design strip.json"),
     Page("measure_discs", "measure discs.png --design plate.json"),
+    Page("measure_grid", "measure board.png --design board.json"),
+    Page("loop_grid", "loop board.png --design board.json"),
     Page("loop_clean", "loop clean.png"),
     Page("loop_explained", "loop ripple.png"),
     Page("loop_pair", "loop --same-foil a.png b.png"),
