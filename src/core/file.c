@@ -263,6 +263,8 @@ static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, si
       return fg_fail(ctx, FG_ERR_DATA, "%s: longer than %zu bytes; is it the right file?", path,
                      cap);
   } while (got > 0);
+  if (ferror(stream) && errno == EISDIR)
+    return fg_fail(ctx, FG_ERR_IO, "%s: is a folder; give the name of a file", path);
   if (ferror(stream))
     return fg_fail(ctx, fg_status_of_errno(errno),
                    "%s: cannot be read: %s; check the disk or copy it again", path,

@@ -145,6 +145,8 @@ static int compare_phrases(const void *left, const void *right) {
   if (a->has_places != b->has_places) return a->has_places ? 1 : -1;
   if (!a->has_places) return strcmp(a->source, b->source);
   if (a->literal_length != b->literal_length) return a->literal_length > b->literal_length ? -1 : 1;
+  bool name = strstr(a->source, "{name") != NULL;
+  if (name != (strstr(b->source, "{name") != NULL)) return name ? 1 : -1;
   bool words = strstr(a->source, "{words") != NULL;
   if (words != (strstr(b->source, "{words") != NULL)) return words ? -1 : 1;
   return strcmp(a->source, b->source);

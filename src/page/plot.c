@@ -8,6 +8,8 @@
 #include "page/page.h"
 
 enum { TICKS_WANTED = 5 };
+/* Width from which on a plot's letters would be too small on a telephone. */
+enum { BROAD = 700 };
 
 double fg_plot_x(const fg_plot *at, double x) {
   return at->left + (x - at->x_low) / (at->x_high - at->x_low) * (at->right - at->left);
@@ -27,8 +29,8 @@ double fg_plot_nice_step(double span) {
 }
 
 void fg_plot_begin(const fg_plot *at, int height, const char *label) {
-  fprintf(at->out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
-          at->width, height);
+  fprintf(at->out, "<svg class=\"plot\"%s viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
+          at->width >= BROAD ? " data-broad" : "", at->width, height);
   fg_html_text(at->out, label);
   fputs("\">\n", at->out);
 }

@@ -6,17 +6,17 @@
 #include "foilgauge/report.h"
 
 static void write_tile_value(FILE *out, const fg_tile *tile) {
-  bool minus = tile->value < 0 && tile->minus;
-  double value = minus ? -tile->value : tile->value;
+  double value = fabs(tile->value);
   if (!isfinite(value)) {
     fputs("–", out);
     return;
   }
-  if (minus) fputs(tile->minus, out);
+  bool zero = tile->digits ? value == 0 : value < 0.5 * pow(10, -tile->decimals);
+  if (!zero) fputs(tile->value < 0 ? "−" : tile->plus ? "+" : "", out);
   if (tile->digits)
     fprintf(out, "%.*g", tile->digits, value);
   else
-    fprintf(out, tile->plus ? "%+.*f" : "%.*f", tile->decimals, value);
+    fprintf(out, "%.*f", tile->decimals, value);
   if (tile->unit) fprintf(out, " %s", tile->unit);
 }
 

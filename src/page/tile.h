@@ -25,7 +25,6 @@ typedef struct fg_tile {
   int decimals;
   int digits;          /* significant, in place of decimals; 0: decimals */
   bool plus;           /* values above 0 have their sign */
-  const char *minus;   /* NULL: the hyphen of printf */
   const char *u_words; /* behind "± U", which comes before the small words; NULL: U is not told */
   const char *small;   /* smaller words under the value; NULL or "": none */
   const char *unknown; /* the small words beside a dash; NULL: those of the value */

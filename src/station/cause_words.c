@@ -76,8 +76,13 @@ static size_t choose_level(const fg_cause *cause, const level_use *uses) {
   return chosen;
 }
 
-static void write_day(int64_t at, char day[FG_DATE_TEXT]) {
-  fg_date_format(floor(fg_cause_days(at)), day);
+/* Writes the day; of foils that were all measured on one day the time, as "2026-03-01 14:02". */
+static void write_time(const fg_cause_data *data, double days, char text[FG_DATE_TEXT]) {
+  bool one_day = data->foils && floor(fg_cause_days(data->at[0])) ==
+                                    floor(fg_cause_days(data->at[data->foils - 1]));
+  fg_date_format(one_day ? days : floor(days), text);
+  char *clock = strchr(text, 'T');
+  if (clock) *clock = ' ';
 }
 
 /* A level of another column that (nearly) the same foils have; SIZE_MAX: none. */
@@ -136,7 +141,7 @@ static void describe_levels(const fg_cause_data *data, bool by_lots, const char 
   const level_use *use = &uses[level];
   cause->value = cause->point[level].shift - mean_of_others(cause, uses, level);
   cause->since = began(data, use) ? data->at[use->first] : 0;
-  write_day(data->at[use->first], day);
+  write_time(data, fg_cause_days(data->at[use->first]), day);
   if (cause->since)
     fg_text_clip(cause->words_of, FG_CAUSE_WORDS, "since %s %s (%s)", cause->name, word, day);
   else
@@ -170,9 +175,10 @@ static int64_t find_time(const fg_cause_data *data, double days) {
   return 0;
 }
 
-static void write_place(const char *column, double x, char text[FG_DATE_TEXT]) {
+static void write_place(const fg_cause_data *data, const char *column, double x,
+                        char text[FG_DATE_TEXT]) {
   if (!strcmp(column, FG_CAUSE_TIME))
-    fg_date_format(floor(x), text);
+    write_time(data, x, text);
   else
     snprintf(text, FG_DATE_TEXT, "%.4g", x);
 }
@@ -214,7 +220,7 @@ static void tie_changes(const fg_cause_data *data, const fg_loop_claim *claim, f
     size_t i = find_change(data, column, claim->shape[0], reach), length = strlen(cause->ties);
     if (!i) continue;
     char day[FG_DATE_TEXT];
-    write_day(data->at[i], day);
+    write_time(data, fg_cause_days(data->at[i]), day);
     fg_text_clip(cause->ties + length, FG_CAUSE_WORDS - length, "%s%s %s since %s",
                  length ? ", " : "", column->name, column->level_name[column->level[i]], day);
     fg_text_clip(cause->tells, FG_CAUSE_WORDS, "foils of %s %s made now", column->name,
@@ -228,7 +234,7 @@ static void describe_curve(const fg_cause_data *data, const fg_loop_claim *claim
   bool over_time = !strcmp(cause->name, FG_CAUSE_TIME);
   cause->value = last->shift - first->shift;
   if (claim->candidate.effect->reads == FG_LOOP_READS_STEP) {
-    write_place(cause->name, claim->shape[0], from);
+    write_place(data, cause->name, claim->shape[0], from);
     cause->since = over_time ? find_time(data, claim->shape[0]) : 0;
     if (over_time) tie_changes(data, claim, cause);
     if (over_time)
@@ -243,10 +249,10 @@ static void describe_curve(const fg_cause_data *data, const fg_loop_claim *claim
     }
     bool rises = high->x > low->x;
     cause->value = (rises ? 1 : -1) * (high->shift - low->shift);
-    write_place(cause->name, rises ? low->x : high->x, from);
-    write_place(cause->name, rises ? high->x : low->x, to);
-    fg_text_clip(cause->words_of, FG_CAUSE_WORDS, "%s%s from %s to %s", over_time ? "" : "with ",
-                 cause->name, from, to);
+    write_place(data, cause->name, rises ? low->x : high->x, from);
+    write_place(data, cause->name, rises ? high->x : low->x, to);
+    fg_text_clip(cause->words_of, FG_CAUSE_WORDS, "%s%s%sfrom %s to %s", over_time ? "" : "with ",
+                 over_time ? "" : cause->name, over_time ? "" : " ", from, to);
   }
   if (cause->tells[0]) return;
   if (cause->ties[0] && over_time)

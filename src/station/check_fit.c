@@ -217,9 +217,9 @@ void fg_check_fit_judge(fg_check_fit *fit, double scale_max_ppm, char *words, si
   fit->passes = worst <= scale_max_ppm;
   size_t used;
   fg_text_clip(words, size,
-               "scanner %s: %zu %s%s, x %+.0f ± %.0f ppm, y %+.0f ± %.0f ppm, shear %+.0f ± %.0f "
+               "%s: %zu %s%s, x %+.0f ± %.0f ppm, y %+.0f ± %.0f ppm, shear %+.0f ± %.0f "
                "µrad; allowed %.0f",
-               fit->passes ? "in order" : "out of order", fit->discs,
+               fit->passes ? FG_CHECK_IN_ORDER : "scanner out of order", fit->discs,
                fit->is_grid ? "mark" : "disc", fg_plural(fit->discs), 1e6 * fit->scale[0],
                2e6 * fit->u_scale[0], 1e6 * fit->scale[1], 2e6 * fit->u_scale[1], 1e6 * fit->shear,
                2e6 * fit->u_shear, scale_max_ppm);

@@ -30,6 +30,9 @@ fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
 fg_status fg_check_fit_grid(fg_context *ctx, const fg_design *design,
                             const fg_measurement *measurement, fg_check_fit *fit);
 
+/* The words of a scanner that is as allowed begin so. */
+#define FG_CHECK_IN_ORDER "scanner in order"
+
 /* Judges the fit against the largest deviation of a scale that is allowed; `words`: the result. */
 void fg_check_fit_judge(fg_check_fit *fit, double scale_max_ppm, char *words, size_t size);
 

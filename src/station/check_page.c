@@ -47,10 +47,16 @@ static const char *find_quantity_words(const fg_subject *s, char *buffer) {
   return buffer;
 }
 
+/* True where a value that is written with these decimals is below 0, and not 0. */
+static bool is_negative(double value, int decimals) {
+  return value <= -0.5 * pow(10, -decimals);
+}
+
 static const char *show_state(const fg_subject *s, const fg_check_state *state, char *buffer) {
   int decimals = quantity_of(s)->decimals;
-  snprintf(buffer, 80, "%.*f ± %.*f", decimals, state->value[s->index], decimals,
-           2 * state->u[s->index]);
+  double value = state->value[s->index];
+  snprintf(buffer, 80, "%s%.*f ± %.*f", is_negative(value, decimals) ? "−" : "", decimals,
+           fabs(value), decimals, 2 * state->u[s->index]);
   return buffer;
 }
 
@@ -77,7 +83,11 @@ static void write_state_change(FILE *out, const fg_subject *s) {
   if (!has_baseline(s)) return;
   double change = states->now->value[s->index] - states->baseline->value[s->index];
   bool changed = fabs(change) > allowed_of(s);
-  fprintf(out, changed ? "<b>%+.*f</b>" : "%+.*f", quantity_of(s)->decimals, change);
+  int decimals = quantity_of(s)->decimals;
+  const char *sign = is_negative(change, decimals)    ? "−"
+                     : is_negative(-change, decimals) ? "+"
+                                                      : "";
+  fprintf(out, changed ? "<b>%s%.*f</b>" : "%s%.*f", sign, decimals, fabs(change));
 }
 
 static const char *find_allowed(const fg_subject *s, char *buffer) {

@@ -91,8 +91,8 @@ static fg_status use_setup(fg_context *ctx, export *at, const char *lot, const c
 enum { SCAN, FOIL, LOT, DIE, OPERATOR, COLUMNS };
 
 static const char of_scan[] = "foils_of_scan";
-static const char *const more_names[FG_LOT_MORE] = {"coil", "oven", "scanner", "order",
-                                                    "disposition"};
+static const char *const more_names[FG_LOT_MORE] = {"coil",  "oven",        "scanner",
+                                                    "order", "disposition", "withheld"};
 
 /* Further columns are there where a row needs them. */
 static fg_status name_columns(fg_context *ctx, fg_manifest *manifest, bool split,

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "page/page.h"
 #include "station/check.h"
+#include "station/check_fit.h"
 #include "station/news.h"
 #include "station/pages.h"
 #include "station/trend.h"
@@ -73,7 +74,12 @@ const char *fg_page_verdict_class(const char *verdict, bool withheld) {
   return "again";
 }
 
-fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool withheld) {
+bool fg_page_check_passed(const char *words) {
+  return !strncmp(words, FG_CHECK_IN_ORDER, strlen(FG_CHECK_IN_ORDER));
+}
+
+fg_card_style fg_page_card_style(const char *kind, const char *words, const char *verdict,
+                                 bool withheld) {
   static const struct {
     const char *kind;
     fg_card_style look;
@@ -82,6 +88,8 @@ fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool wit
       {"check", {"CHECKED", "none"}},          {"foreign", {"NO SCAN", "again"}},
       {"unfinished", {"SCAN AGAIN", "again"}}, {"unreadable", {"SCAN AGAIN", "again"}},
   };
+  if (!strcmp(kind, "check") && !fg_page_check_passed(words))
+    return (fg_card_style){"CHECK FAILED", "fail"};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     if (!strcmp(kind, rows[i].kind)) return rows[i].look;
   return (fg_card_style){fg_page_verdict_words(verdict, withheld),

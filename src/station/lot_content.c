@@ -20,7 +20,8 @@ static const char foils_of_lot[] =
     " coalesce((SELECT number FROM orders WHERE id = f.order_id), ''),"
     " coalesce((SELECT kind FROM dispositions AS d WHERE d.foil = f.id ORDER BY d.id DESC LIMIT "
     "1),"
-    " '') FROM foils AS f JOIN scans AS s ON s.id = f.scan WHERE f.lot = ?"
+    " ''), coalesce(s.withheld, '') FROM foils AS f JOIN scans AS s ON s.id = f.scan WHERE f.lot = "
+    "?"
     " ORDER BY s.id, f.number";
 
 static fg_status add_content_scan(fg_context *ctx, fg_lot_content *content, const fg_query *row) {

@@ -12,6 +12,7 @@ typedef enum fg_lot_more {
   FG_LOT_SCANNER,
   FG_LOT_ORDER,
   FG_LOT_DISPOSITION,
+  FG_LOT_WITHHELD, /* why the verdict does not hold */
   FG_LOT_MORE
 } fg_lot_more;
 

@@ -27,6 +27,8 @@ static void write_foil_call(const fg_stored_foil *stored, FILE *out) {
   fg_page_time(out, stored->at);
   fputs("</span></div>\n", out);
   const char *words = withheld ? stored->withheld : stored->reasons;
+  if (!words[0] && !strcmp(stored->verdict, "cannot_tell"))
+    words = "A limit lies within the uncertainty of a value: neither PASS nor FAIL is proven.";
   if (!words[0]) return;
   fputs("<p class=\"next\">", out);
   fg_html_text(out, words);

@@ -55,6 +55,13 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
   return fg_query_end(ctx, &query, "reading the cards");
 }
 
+/* True where the ± holds the default for an unknown scanner, which another scan does not change. */
+static bool is_scale_unknown(const fg_inspection *station, const card *newest) {
+  const fg_design *design = &fg_part_recipe_of_setup(station, newest->setup).lot->design;
+  return design->calibration.stated &&
+         !strcmp(design->calibration.certificate, fg_calibration_of_flatbed().certificate);
+}
+
 static const char *next_step(const card *newest) {
   if (!strcmp(newest->kind, "unfinished")) return "Scan the foil again.";
   if (!strcmp(newest->kind, "foreign"))
@@ -62,7 +69,10 @@ static const char *next_step(const card *newest) {
   if (!strcmp(newest->kind, "unreadable") && fg_station_is_scanned(newest->path))
     return "See to the scanner, the glass and the foil, and scan again.";
   if (!strcmp(newest->kind, "unreadable")) return "Look at the foil and the glass, and scan again.";
-  if (!strcmp(newest->kind, "check")) return "Go on with foils.";
+  if (!strcmp(newest->kind, "check"))
+    return fg_page_check_passed(newest->message)
+               ? "Go on with foils."
+               : "Do not go on with foils: the page Scanner says what to do.";
   if (!strcmp(newest->kind, "known")) return "Nothing is new: go on with the next foil.";
   if (!strcmp(newest->kind, "duplicate")) return "Put this foil on the glass and scan it.";
   if (newest->withheld[0]) return newest->withheld;
@@ -97,8 +107,8 @@ static void write_traceability(FILE *out, const fg_inspection *station, const ca
 }
 
 static void write_newest_call(FILE *out, const fg_inspection *station, const card *newest) {
-  const fg_card_style look =
-      fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  const fg_card_style look = fg_page_card_style(newest->kind, newest->message, newest->verdict,
+                                                newest->withheld[0] != '\0');
   fprintf(out, "<div class=\"call %s%s\"", look.style,
           strlen(look.words) > LARGE_LETTERS ? " long" : "");
   write_arrival(out, newest->id, look.words);
@@ -107,7 +117,7 @@ static void write_newest_call(FILE *out, const fg_inspection *station, const car
   fputs("<br>", out);
   fg_page_time(out, newest->at);
   write_traceability(out, station, newest);
-  fputs("</span></div>\n<p class=\"next\">", out);
+  fprintf(out, "</span></div>\n<p class=\"next%s\">", strcmp(look.style, "pass") ? "" : " calm");
   if (newest->message[0]) {
     fg_html_name(out, newest->path);
     fputc(' ', out);
@@ -115,6 +125,11 @@ static void write_newest_call(FILE *out, const fg_inspection *station, const car
     fputs(". ", out);
   }
   fg_html_text(out, next_step(newest));
+  if (newest->foils && !newest->withheld[0] && !strcmp(newest->verdict, "cannot_tell") &&
+      strcmp(newest->kind, "known") != 0 && is_scale_unknown(station, newest))
+    fputs(" If it stays so, the scanner's unknown scale decides (± 0.6 % of a length): a model of "
+          "the scanner makes it smaller.",
+          out);
   fputs("</p>\n", out);
 }
 
@@ -241,10 +256,14 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
                  &query);
   fg_query_integer(&query, newest);
   fg_query_integer(&query, CARDS);
-  fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
-  while (fg_query_row(&query)) {
-    const fg_card_style look = fg_page_card_style(
-        fg_query_get_text(&query, 2), fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
+  bool any = false;
+  for (; fg_query_row(&query); any = true) {
+    if (!any)
+      fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">",
+            out);
+    const fg_card_style look =
+        fg_page_card_style(fg_query_get_text(&query, 2), fg_query_get_text(&query, 3),
+                           fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
     fputs("<li", out);
     write_arrival(out, fg_query_get_integer(&query, 7), look.words);
     fprintf(out, "><span class=\"tag %s\">%s</span><span>", look.style, look.words);
@@ -257,7 +276,7 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
     fg_page_time(out, fg_query_get_integer(&query, 0));
     fputs("</span></li>\n", out);
   }
-  fputs("</ul></section>\n", out);
+  if (any) fputs("</ul></section>\n", out);
   return fg_query_end(ctx, &query, "reading the cards");
 }
 
@@ -278,8 +297,8 @@ static fg_status write_scan(fg_context *ctx, fg_inspection *station, sqlite3 *re
 }
 
 static void write_before(FILE *out, const card *newest) {
-  const fg_card_style look =
-      fg_page_card_style(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  const fg_card_style look = fg_page_card_style(newest->kind, newest->message, newest->verdict,
+                                                newest->withheld[0] != '\0');
   fputs("<p class=\"note\"", out);
   write_arrival(out, newest->id, look.words);
   fputs(">Before it: ", out);

@@ -94,7 +94,8 @@ static void write_check_call(FILE *out, const fg_station_health *health) {
 }
 
 static void write_next(FILE *out, const fg_station_check *check, const fg_station_health *health) {
-  fputs("<p class=\"next\">", out);
+  bool in_order = !health->clock_back && !health->changed && !health->failed && !health->due;
+  fprintf(out, "<p class=\"next%s\">", in_order ? " calm" : "");
   if (health->clock_back)
     fputs("The clock of this machine stands before the last check: it was set back, so nobody can "
           "say how old that check is. Set the clock, and check the scanner. ",
@@ -130,6 +131,10 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
   fputs("</p>\n", out);
 }
 
+static const char *sign_of(double value) {
+  return value < 0 ? "−" : value > 0 ? "+" : "";
+}
+
 /* Rounded, and 0 without the sign that it comes from. */
 static double rounded(double value, int decimals) {
   double unit = decimals ? 10 : 1;
@@ -143,14 +148,16 @@ static void write_tiles(FILE *out, const history *all, double allowed) {
   for (int k = 0; k < AXES; k++) {
     char text[120], since[80] = "";
     if (!isfinite(last->value[k])) continue;
-    int used = snprintf(text, sizeof text, "%+.*f ± %.*f %s", axes[k].decimals,
-                        rounded(last->value[k], axes[k].decimals), axes[k].decimals, 2 * last->u[k],
-                        axes[k].unit);
+    double value = rounded(last->value[k], axes[k].decimals);
+    int used = snprintf(text, sizeof text, "%s%.*f ± %.*f %s", sign_of(value), axes[k].decimals,
+                        fabs(value), axes[k].decimals, 2 * last->u[k], axes[k].unit);
     if (axes[k].judged)
-      snprintf(text + used, sizeof text - (size_t)used, "<small>allowed ± %.0f</small>", allowed);
+      snprintf(text + used, sizeof text - (size_t)used, "<small>allowed ± %.0f %s</small>", allowed,
+               axes[k].unit);
+    double change = rounded(last->value[k] - first->value[k], 0);
     if (all->count > 1 && axes[k].judged)
-      snprintf(since, sizeof since, "%+.0f ± %.0f since the first that is drawn",
-               rounded(last->value[k] - first->value[k], 0), 2 * hypot(last->u[k], first->u[k]));
+      snprintf(since, sizeof since, "%s%.0f ± %.0f since the first that is drawn", sign_of(change),
+               fabs(change), 2 * hypot(last->u[k], first->u[k]));
     fg_html_tile(out, &(fg_tile){axes[k].short_title, .text = text, .small = since});
   }
   fputs("</dl>\n", out);
@@ -235,9 +242,9 @@ static void write_history(FILE *out, const history *all, double allowed) {
   fprintf(
       out,
       "</div>\n<p class=\"note noprint\">Measured over true, less 1, with ± 2 u; green: what is "
-      "allowed. The newest %zu checks, in the order in which they were made. "
+      "allowed. The newest %zu check%s, in the order in which they were made. "
       "<a href=\"/scanner?newest=all\">all</a></p>\n",
-      all->count);
+      all->count, fg_plural(all->count));
   write_list(out, all);
 }
 

@@ -139,6 +139,7 @@ static void write_changes(const page *p) {
 static void write_caption(const page *p) {
   const fg_trend *trend = p->trend;
   const fg_tolerance *tolerance = trend->quantity.tolerance;
+  const char *unit = p->choice->row->unit;
   fprintf(p->out, "<p class=\"note\">%zu %s, from ", trend->count, things(p->choice));
   write_point(p, 0);
   fputs(", ", p->out);
@@ -150,13 +151,13 @@ static void write_caption(const page *p) {
   if (p->choice->by_lots)
     fprintf(p->out,
             ". Dashed blue: the chart's limits, three sigma of a lot's mean from the mean, by what "
-            "foils vary within lots (σ %.4g).",
-            trend->quantity.means.sigma);
+            "foils vary within lots (σ %.3g%s%s).",
+            trend->quantity.means.sigma, unit[0] ? " " : "", unit);
   else
     fprintf(p->out,
             ". Dashed blue: the chart's limits, three sigma from the mean, by what varies from one "
-            "foil to the next (σ %.4g).",
-            trend->quantity.chart.sigma);
+            "foil to the next (σ %.3g%s%s).",
+            trend->quantity.chart.sigma, unit[0] ? " " : "", unit);
   if (tolerance)
     fprintf(p->out, " Red: beyond the tolerance of the %s (%s).",
             trend->mixed ? "newest foil's recipe" : "design",
@@ -185,7 +186,8 @@ static void write_run(const page *p, const fg_trend_run *run) {
 static void write_runs(const page *p, const fg_trend_run *runs, size_t count, size_t all) {
   fputs("<h2>Signals</h2>\n", p->out);
   if (!count) {
-    fprintf(p->out, "<p class=\"next\">None: these %s vary as they would by chance alone.</p>\n",
+    fprintf(p->out,
+            "<p class=\"next calm\">None: these %s vary as they would by chance alone.</p>\n",
             things(p->choice));
     return;
   }

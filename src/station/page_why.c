@@ -77,9 +77,9 @@ static void write_errors(const why_page *p) {
   write_error_tile(p->out, "Scatter of foils before", report->before, row, "standard deviation");
   write_error_tile(p->out, "after", report->after, row, "with these causes taken out");
   if (isfinite(report->cv_before) && report->causes) {
-    write_error_tile(p->out, "Left out in turn, before", report->cv_before, row,
-                     report->days < 20 ? "foils" : "means of days");
-    write_error_tile(p->out, "after", report->cv_after, row, "predicted without them");
+    write_error_tile(p->out, "Prediction error before", report->cv_before, row,
+                     report->days < 20 ? "of foils left out in turn" : "of days left out in turn");
+    write_error_tile(p->out, "after", report->cv_after, row, "with these causes");
   }
   fputs("</dl>\n", p->out);
 }

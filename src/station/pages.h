@@ -46,12 +46,16 @@ void fg_page_csrf_token(const fg_inspection *station, FILE *out);
 const char *fg_page_verdict_words(const char *verdict, bool withheld);
 const char *fg_page_verdict_class(const char *verdict, bool withheld);
 
-/* Both of a card in the list of arrivals: its kind, and the verdict of its scan where it has one. A
- * scan that was measured before gives no verdict again. */
+/* True of a check's words when the scanner is in order. */
+bool fg_page_check_passed(const char *words);
+
+/* Both of a card in the list of arrivals: its kind and words, and the verdict of its scan where it
+ * has one. A scan that was measured before gives no verdict again. */
 typedef struct fg_card_style {
   const char *words, *style;
 } fg_card_style;
-fg_card_style fg_page_card_style(const char *kind, const char *verdict, bool withheld);
+fg_card_style fg_page_card_style(const char *kind, const char *words, const char *verdict,
+                                 bool withheld);
 
 /* Returns the styles of the reports and the station's own. */
 const char *fg_station_style_text(void);

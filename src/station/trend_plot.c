@@ -253,11 +253,18 @@ static void draw_causes(const drawing *d) {
   }
 }
 
+/* Decimals that tell limits apart: a tenth of sigma, and one or two more than the ticks have. */
+static int label_decimals(const drawing *d) {
+  double sigma = d->chart->sigma, wanted = sigma > 0 ? ceil(-log10(sigma)) + 1 : 0;
+  return (int)fmin(fmax(wanted, d->decimals + 1), d->decimals + 2);
+}
+
 static size_t add_label(const drawing *d, fg_plot_label labels[LABELS], size_t count, double value,
                         const char *words, const char *style) {
   if (!isfinite(value)) return count;
   labels[count] = (fg_plot_label){.y = value, .style = style};
-  snprintf(labels[count].text, sizeof labels[count].text, "%s %.*f", words, d->decimals + 1, value);
+  int decimals = value == d->upper || value == d->lower ? d->decimals + 1 : label_decimals(d);
+  snprintf(labels[count].text, sizeof labels[count].text, "%s %.*f", words, decimals, value);
   return count + 1;
 }
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every page that the program writes, in a real browser: at 1280 px, and printed on A4. Ends with an error for a page that
-is wider than its window, a table or a plot's words that are clipped, a heading that ends a printed page, a printed page
-that is half empty although others follow.
+"""Every page that the program writes, in a real browser: at 1280 px, printed on A4, and on a phone of 400 px. Ends with an error
+for a page that is wider than its window, a table or a plot's words that are clipped, a heading that ends a printed page, a
+printed page that is half empty although others follow; on a phone, where tables may be pushed aside, for a table whose second
+column is out of sight, and for letters of a plot that are too small to be read.
 
     tests/browser/pages_browser.py PROGRAM [--renderer PROGRAM] [--only REGEX]
     tests/browser/pages_browser.py PROGRAM --pictures FOLDER [--only REGEX]    keeps each page as HTML, PNG and PDF there
@@ -32,6 +33,8 @@ except ImportError:
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCREEN_PX = 1280
+PHONE_PX = 400
+PHONE_LETTERS_PX = 7.4  # of a plot on a phone
 PAPER_INCHES = (8.27, 11.69)  # A4
 PRINT_PX = 688  # what A4 leaves between margins of 14 mm, at 96 px an inch
 LEAST_FILLED = 0.55  # of a printed page that others follow
@@ -99,12 +102,15 @@ SCANS = {
     "a.png": scan(3, -75, [{"id": "scan.scale_y", "value": 0.001}]), "b.png": scan(4, 15, [{"id": "scan.scale_y", "value": 0.001}]),
     "curve.png": scan(11, -75, [CURVE], foil=PLACED, width_px=4200, height_px=4200),
     "residue.png": scan(12, -75, [CURVE, RIPPLE], foil=PLACED, width_px=4200, height_px=4200),
+    "board.png": {"seed": 5, "scanner": {"dpi": 1200}, "grids": [{"marks": "dots", "centre_mm": [15, 15], "pitch_mm": 2.5, "columns": 10,
+                                                                  "rows": 10, "mark_mm": 1}], "effects": [{"id": "scan.shear", "value": 0.001}]},
     "decay.png": scan(9, -70, foil=dict(FOIL, radius_mm=[3.60, 3.50, 3.45, 3.43, 3.42, 3.415, 3.41, 3.41, 3.41])),
 }
 
 # Other files: JSON of a value that is no text, text of more than one line as it is, else a file of the repository.
 FILES = {
     "limits.json": {"schema": "foilgauge/design/1", "name": "gen2", "bump_count": 9, "tolerances": LIMITS},
+    "board.json": {"schema": "foilgauge/design/1", "form": "grid", "marks": "dots", "pitch_mm": 2.5, "u_pitch_mm": 0.0025},
     "sinusoidal.json": {"schema": "foilgauge/design/1", "name": "sinus", "form": "sinusoidal"},
     "strip.json": "samples/top_foil_design.json",
     "plate.json": {"schema": "foilgauge/design/1", "name": "pins", "form": "discs",
@@ -142,6 +148,8 @@ PAGES = [
     Page("measure_sinusoidal", "measure sinusoidal.png --design sinusoidal.json"),
     Page("measure_strip", "measure strip.png --design strip.json"),
     Page("measure_discs", "measure discs.png --design plate.json"),
+    Page("measure_grid", "measure board.png --design board.json"),
+    Page("loop_grid", "loop board.png --design board.json"),
     Page("loop_clean", "loop clean.png"),
     Page("loop_explained", "loop ripple.png"),
     Page("loop_pair", "loop --same-foil a.png b.png"),
@@ -258,6 +266,29 @@ for (const svg of document.querySelectorAll('svg')) {
 return found;
 """ % SLACK_PX
 
+# Hidden on a phone: columns and tiles out of sight, letters that are too small.
+HIDDEN = """
+const width = document.documentElement.clientWidth, found = [];
+if (document.documentElement.scrollWidth > width + %s)
+  found.push('the page is ' + document.documentElement.scrollWidth + ' px wide in ' + width);
+for (const table of document.querySelectorAll('table')) for (const row of table.rows) {
+  const cell = row.cells[1], box = cell && cell.colSpan === 1 && cell.textContent.trim() ? cell.getBoundingClientRect() : null;
+  if (!box || !box.width || box.right <= width) continue;
+  found.push('the second column of a table is out of sight: ' + row.textContent.trim().slice(0, 60));
+  break;
+}
+for (const e of document.querySelectorAll('.tiles > div')) if (e.getBoundingClientRect().right > width)
+  found.push('a tile is out of sight: ' + e.textContent.trim().slice(0, 40));
+for (const svg of document.querySelectorAll('svg.plot')) {
+  const sizes = [...svg.querySelectorAll('text')].filter(e => e.getBoundingClientRect().width && e.textContent.trim())
+    .filter(e => !e.closest('[style*=font-size]'))  // ticks that their many digits make smaller
+    .map(e => parseFloat(getComputedStyle(e).fontSize) * Math.hypot(e.getScreenCTM().a, e.getScreenCTM().b));
+  if (sizes.length && Math.min(...sizes) < %s)
+    found.push('letters of ' + Math.min(...sizes).toFixed(1) + ' px: ' + svg.getAttribute('aria-label'));
+}
+return found;
+""" % (SLACK_PX, PHONE_LETTERS_PX)
+
 HEADINGS = "return [...document.querySelectorAll('h1, h2, h3, summary')].map(e => e.innerText)"
 
 
@@ -288,12 +319,14 @@ class Reader:
         self.browser.get("file://" + file)
 
     def look(self, file):
-        """Defects of a page, on the screen and printed."""
+        """Defects of a page, on the screen, on a phone and printed."""
         self.open(file)
         wrong = self.clipped(f"at {SCREEN_PX} px")
         headings = {squeezed(text) for text in self.browser.execute_script(HEADINGS)} - {""}
         self.set_width(PRINT_PX, "print")
         wrong += self.clipped("printed on A4")
+        self.set_width(PHONE_PX)
+        wrong += [f"at {PHONE_PX} px: {words}" for words in self.browser.execute_script(HIDDEN)]
         self.set_width(SCREEN_PX)
         with tempfile.NamedTemporaryFile(suffix=".pdf") as pdf:
             self.print(pdf.name)

@@ -47,6 +47,7 @@ check 65 'empty.png: is empty' "$folder/empty.png"
 echo 'Dear scanner,' >"$folder/text.png"
 check 65 'text.png: is a text' "$folder/text.png"
 check 74 'is a folder' "$folder"
+check 74 'is a folder; give the name of a file' "$good" --design "$folder"
 check 74 'lost.png: cannot be opened' "$folder/lost.png"
 "$program" measure - -o "$out/a.json" </dev/null 2>"$folder/stderr"
 code=$?

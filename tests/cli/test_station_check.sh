@@ -90,6 +90,10 @@ page = lambda: plain(urllib.request.urlopen(base + "scanner").read().decode())
 wait_until(lambda: 'name="form"' in page())
 text = page()
 assert "CHANGED" in text
+now = plain(urllib.request.urlopen(base).read().decode())
+assert ">CHECK FAILED<" in now and "Do not go on with foils" in now and "Go on with foils." not in now, now
+with open(sys.argv[1] + "/changed.html", "w") as file:
+    file.write(urllib.request.urlopen(base + "scanner").read().decode() + urllib.request.urlopen(base).read().decode())
 token = re.search(r'name="form" value="(\w+)"', text).group(1)
 check = re.search(r'name="id" value="(\d+)"', text).group(1)
 def post(fields):
@@ -102,11 +106,14 @@ assert "CHANGED" in page()
 assert post({"form": token, "id": str(int(check) - 1)}) == 404
 assert post({"form": token, "id": check}) == 200
 text = page()
+with open(sys.argv[1] + "/scanner.html", "w") as file:
+    file.write(urllib.request.urlopen(base + "scanner").read().decode())
 assert "IN ORDER" in text and "This check is the baseline" in text and "as the new baseline" not in text, text
 P
 kill "$station"
 wait "$station" 2>/dev/null || true
 station=
+said=$("$(dirname "$program")/tests/missing_words" de "$work/scanner.html" "$work/changed.html") || fail "no German words: $said"
 plate 12 "$work/in/check_like_it.png" "$plain, \"gamma\": 1.8"
 once
 [ "$(newest changes)" = "" ] || fail "as accepted, and a change: $(newest changes)"

@@ -101,7 +101,9 @@ try:
     if not database.startswith("postgresql"):
         rows = sqlite3.connect(database).execute("SELECT source, count(*), max(event) FROM hub_events GROUP BY source").fetchall()
         assert {row[0]: row[1:] for row in rows} == {source["hall " + name]: (own(name), own(name)) for name in "ab"}, rows
-    page = urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{port}/", headers={"Cookie": "foilgauge=" + token})).read().decode()
+    def show():
+        return plain(urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{port}/", headers={"Cookie": "foilgauge=" + token})).read().decode())
+    page = show()
     assert "hall a" in page and ">B3</a>" in page and page.count("<table") == 2, page
     assert ask("/api/parts.csv").count("\n") == 5, ask("/api/parts.csv")
     # A station's wrong clock moves no part: they are in the order in which they first came, by the hub's clock.
@@ -119,6 +121,13 @@ try:
     assert order() == ["C3", "C2", "C1b"], order()
     assert [row["parts"] for row in state()["stations"]] == [2, 2, 3], state()["stations"]
     assert [part["measured_at"][:4] for part in state(station="hall c")["parts"]] == ["2026", "2001", "2099"]
+    # A verdict that does not hold is none, neither on the page nor in a search.
+    ask("/api/parts", json.dumps({**whole, "source": "c" * 32, "station": "hall c", "event": 5, "foil": 3, "serial": "C3", "verdict": "pass",
+                                  "withheld": "The scanner's check is due"}).encode())
+    row = re.search(r"<tr>(?:(?!<tr>).)*>C3<.*?</tr>", show(), re.S).group(0)
+    assert ">NO VERDICT<" in row and "PASS" not in row and "pass" not in row, row
+    assert "C3" not in [part["serial"] for part in state(verdict="pass")["parts"]]
+    assert [part["serial"] for part in state(verdict="withheld")["parts"]] == ["C3"]
     # A database of before, which has no times of receipt, gets them of its events.
     before = state()["parts"]
     kill("hub")

@@ -194,4 +194,7 @@ sql "UPDATE foils SET serial = 'again'" \
   "UPDATE scans SET withheld = 'due' WHERE id = (SELECT max(id) FROM scans)"
 "$program" station "$work/in" --export "$work/last" 2>"$work/said" || true
 said "$work/said" "4 foils of 4 scans: 4 pass, 0 fail, 0 cannot be told; 1 foil counts with its later scan; 1 verdict does not hold: the scanner's check was due" "--export"
+# The table of foils says which one.
+table=$(grep -l 'withheld' "$work"/last/*/foils.csv) || fail "no column of verdicts that do not hold"
+[ "$(grep -c ',due,' "$table")" = 1 ] || fail "withheld: $(cut -d, -f1-12 "$table")"
 echo "lots: exported, closed, closed again"

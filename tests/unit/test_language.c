@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "effect/table_effects.h"
 #include "foilgauge/control.h"
 #include "foilgauge/picture.h"
 #include "foilgauge/words.h"
@@ -217,6 +218,41 @@ static void tables_of_words_are_known(void **state) {
   }
 }
 
+/* The words of effects stand in sentences of the station's causes, where a name would hide them. */
+static void effects_have_words(const fg_loop_effect *effects) {
+  for (; effects->id; effects++) {
+    const char *over[] = {"time", "die", "temperature_C"},
+               *more = effects->pair ? " and duration_h" : "";
+    for (size_t i = 0; effects->accepts && i < sizeof over / sizeof *over; i++) {
+      char text[400];
+      snprintf(text, sizeof text, "%s %s%s", effects->words, over[i], more);
+      assert_has_words(effects->id, text);
+      snprintf(
+          text, sizeof text,
+          "from 2026-03-01 to 2026-05-03: bump radius −0.41 %% (−0.0136 mm), U 0.08 %%; tied with "
+          "%s %s%s, die B on the same foils; a column of what changed then (--context) would tell",
+          effects->words, over[i], more);
+      char *translated = fg_phrase_translate(german, text);
+      if (!translated || strstr(translated, effects->words))
+        fail_msg("%s: \"%s\" became \"%s\"", effects->id, text, translated ? translated : "(none)");
+      free(translated);
+    }
+  }
+}
+
+static void effects_of_tables_are_known(void **state) {
+  (void)state;
+  effects_have_words(fg_loop_table_effects());
+  effects_have_words(fg_loop_noise_effects());
+  effects_have_words(fg_loop_curve_effects());
+  assert_has_words("a cause",
+                   "with temperature_C above 22.1: bump radius +0.41 % (+0.0136 mm), U 0.08 %");
+  assert_has_words("a cause", "with hour from 6 to 14: bump radius +0.41 % (+0.0136 mm), U 0.08 %");
+  assert_has_words(
+      "a cause",
+      "from 2026-03-01 08:02 to 2026-03-01 14:30: bump radius +0.41 % (+0.0136 mm), U 0.08 %");
+}
+
 static const char *choose(const char *recipe, const char *accepted) {
   const fg_language *language = fg_languages_choose(languages, recipe, accepted);
   return language ? fg_language_tag(language) : "en";
@@ -240,10 +276,11 @@ static void recipe_or_browser_choose(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(texts_find_their_entries),  cmocka_unit_test(long_texts_end),
-      cmocka_unit_test(markup_and_names_stay),     cmocka_unit_test(numbers_get_the_decimal_sign),
-      cmocka_unit_test(broken_lists_are_refused),  cmocka_unit_test(lists_are_whole),
-      cmocka_unit_test(tables_of_words_are_known), cmocka_unit_test(recipe_or_browser_choose),
+      cmocka_unit_test(texts_find_their_entries),    cmocka_unit_test(long_texts_end),
+      cmocka_unit_test(markup_and_names_stay),       cmocka_unit_test(numbers_get_the_decimal_sign),
+      cmocka_unit_test(broken_lists_are_refused),    cmocka_unit_test(lists_are_whole),
+      cmocka_unit_test(tables_of_words_are_known),   cmocka_unit_test(recipe_or_browser_choose),
+      cmocka_unit_test(effects_of_tables_are_known),
   };
   return cmocka_run_group_tests(tests, open_languages, close_languages);
 }

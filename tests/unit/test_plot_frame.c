@@ -43,8 +43,8 @@ static void margins_left_out_have_defaults(void **state) {
   fg_plot plot =
       fg_plot_open(out, &(fg_plot_frame){"a < b", .height = 300, .left = 70, .x = x, .y = y});
   fclose(out);
-  assert_string_equal(
-      text, "<svg class=\"plot\" viewBox=\"0 0 1000 300\" role=\"img\" aria-label=\"a &lt; b\">\n");
+  assert_string_equal(text, "<svg class=\"plot\" data-broad viewBox=\"0 0 1000 300\" role=\"img\" "
+                            "aria-label=\"a &lt; b\">\n");
   assert_near(fg_plot_x(&plot, 0), 70, 1e-9);
   assert_near(fg_plot_x(&plot, 10), 985, 1e-9);
   assert_near(fg_plot_y(&plot, -1), 250, 1e-9);

@@ -160,6 +160,39 @@ static void test_a_scan_that_came_again_is_no_pass(void **state) {
   }
 }
 
+/* Another scan does not make the ± smaller that a scanner's unknown scale causes. */
+static void test_an_open_verdict_says_why(void **state) {
+  fg_calibration *calibration = &fixture.settings.lot.design.calibration;
+  (void)state;
+  sql("UPDATE scans SET verdict = 'cannot_tell' WHERE id = 2;"
+      "UPDATE foils SET verdict = 'cannot_tell' WHERE id = 2;"
+      "INSERT INTO arrivals (id, at, path, kind, message, scan) VALUES"
+      " (2, 1000000002000, 'L1_S-2.png', 'measured', '', 2)");
+  assert_int_equal(ask("/foil", "id=2", false), 200);
+  expect_words("neither PASS nor FAIL is proven");
+  assert_int_equal(ask("/", "", false), 200);
+  expect_words("<p class=\"next\">A limit lies within the uncertainty");
+  expect_no_words("the scanner's unknown scale decides");
+  *calibration = fg_calibration_of_flatbed();
+  assert_int_equal(ask("/", "", false), 200);
+  expect_words("the scanner's unknown scale decides");
+  sql("UPDATE scans SET verdict = 'pass' WHERE id = 2");
+  assert_int_equal(ask("/", "", false), 200);
+  expect_words("<p class=\"next calm\">Put the foil with the good ones");
+  expect_no_words("the scanner's unknown scale decides");
+}
+
+/* No heading stands above nothing. */
+static void test_the_first_card_has_none_before_it(void **state) {
+  (void)state;
+  assert_int_equal(ask("/", "", false), 200);
+  expect_no_words(">Before</h2>");
+  sql("INSERT INTO arrivals (id, at, path, kind, message, scan) VALUES"
+      " (2, 1000000002000, 'L1_S-2.png', 'measured', '', 2)");
+  assert_int_equal(ask("/", "", false), 200);
+  expect_words(">Before</h2>");
+}
+
 static void test_what_is_on_its_way_stands_before_the_last_verdict(void **state) {
   static const char *const words[] = {"RECEIVING", "MEASURING"};
   fg_inspection *station = &fixture.station;
@@ -282,6 +315,8 @@ int main(void) {
       TEST(of_two_files_one_is_shown),
       TEST(crushed_is_said_of_crushed_bumps),
       TEST(a_page_says_how_old_it_is),
+      TEST(an_open_verdict_says_why),
+      TEST(the_first_card_has_none_before_it),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,7 +19,7 @@ static void a_stable_process_has_a_capability(void **state) {
   const char *page = get(f, "/trends", "", 200);
   assert_has(page, "<h1>bump radius</h1>");
   assert_has(page, "40 foils, from ");
-  assert_has(page, "<p class=\"next\">None: these foils vary as they would by chance alone.");
+  assert_has(page, "<p class=\"next calm\">None: these foils vary as they would by chance alone.");
   assert_has(page, "<dt>Cpk</dt>");
   assert_has(page, "of 120 values of 40 foils against 3.3 to 3.5");
   assert_has(page, ">max 3.500</text>");
@@ -218,6 +218,7 @@ static void a_foil_counts_once_in_its_lot(void **state) {
               3.4);
   const char *page = get(f, "/trends", "by=lots", 200), *sigma = strstr(page, "(σ ");
   assert_non_null(sigma);
+  assert_has(sigma, " mm).");
   snprintf(once, sizeof once, "%.*s", (int)strcspn(sigma, ")"), sigma);
   scan_again(f, 20);
   page = get(f, "/trends", "by=lots", 200);
@@ -308,7 +309,7 @@ static void a_failed_check_and_a_clock_set_back_withhold(void **state) {
   add_check(f, 2, fg_station_now() - HOUR_MS, 4e-4, "fail");
   const char *page = get(f, "/scanner", "", 200);
   assert_has(page, "<b>OUT OF ORDER</b>");
-  assert_has(page, "<dd>+400 ± 20 ppm<small>allowed ± 300</small>");
+  assert_has(page, "<dd>+400 ± 20 ppm<small>allowed ± 300 ppm</small>");
   assert_has(page, "<small>+300 ± 28 since the first that is drawn</small>");
   assert_int_equal(count(page, "class=\"signal\""), 3);
   assert_has_not(page, "<in>");
@@ -368,7 +369,7 @@ static void a_changed_picture_withholds_until_it_is_accepted(void **state) {
   assert_has(why, "another tone, sharpening or blur than its baseline");
   page = get(f, "/scanner", "", 200);
   assert_has(page, "<b>CHANGED</b>");
-  assert_has(page, "<b>-1.34</b></td><td>± 0.25</td><td class=\"words\">tone curve");
+  assert_has(page, "<b>−1.34</b></td><td>± 0.25</td><td class=\"words\">tone curve");
   assert_has(page, "<td>+0.05</td><td>± 1.11</td>");
   assert_has(page, "Take this check as the new baseline</button>");
   assert_has(page, "FAILED</span>");

@@ -20,8 +20,7 @@ static void assert_tile(const fg_tile *tile, const char *wanted) {
 static void a_value_has_decimals_unit_and_u(void **state) {
   (void)state;
   fg_tile tile = {"Gap", .value = -12.346, .u = 0.126, .unit = "µm", .decimals = 2};
-  assert_tile(&tile, "<div><dt>Gap</dt><dd>-12.35 µm</dd></div>\n");
-  tile.minus = "−";
+  assert_tile(&tile, "<div><dt>Gap</dt><dd>−12.35 µm</dd></div>\n");
   tile.u_words = "";
   assert_tile(&tile, "<div><dt>Gap</dt><dd>−12.35 µm<small>± 0.25</small></dd></div>\n");
   tile.u_words = FG_TILE_U_IS_2U;
@@ -30,6 +29,10 @@ static void a_value_has_decimals_unit_and_u(void **state) {
               "<div><dt>Gap</dt><dd>−12.35 µm<small>± 0.25 (U = 2 u), at 30°</small></dd></div>\n");
   tile = (fg_tile){"R", .value = 1.5, .decimals = 1, .plus = true};
   assert_tile(&tile, "<div><dt>R</dt><dd>+1.5</dd></div>\n");
+  tile.value = -1.5;
+  assert_tile(&tile, "<div><dt>R</dt><dd>−1.5</dd></div>\n");
+  tile.value = -0.04; /* 0.0 has no sign */
+  assert_tile(&tile, "<div><dt>R</dt><dd>0.0</dd></div>\n");
   tile = (fg_tile){"R", .value = 12.34567, .digits = 5, .unit = "mm"};
   assert_tile(&tile, "<div><dt>R</dt><dd>12.346 mm</dd></div>\n");
 }

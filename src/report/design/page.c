@@ -13,7 +13,7 @@
 
 static fg_tile make_design_tile(const char *title, double value, const char *unit,
                                 const char *source) {
-  return (fg_tile){title, .value = value, .digits = 5, .unit = unit, .minus = "−", .small = source};
+  return (fg_tile){title, .value = value, .digits = 5, .unit = unit, .small = source};
 }
 
 static void put_design_tiles(FILE *out, const fg_design_report *report) {

@@ -177,6 +177,25 @@ static void put_arrow(FILE *out, const fg_map_arrow *arrow, double scale, double
           y);
 }
 
+/* Box of a map in px: its frame with a margin, and the tips of all arrows that are used. */
+typedef struct map_box {
+  double left, right, top, bottom;
+} map_box;
+
+static map_box find_map_box(const fg_map_arrow *arrows, size_t count, double width, double height,
+                            double px_per_mm, double magnification) {
+  enum { MARGIN_PX = 8 };
+  map_box box = {0, width, 0, height};
+  for (size_t i = 0; i < count; i++) {
+    if (!arrows[i].used) continue;
+    double x = px_per_mm * (arrows[i].at_mm.x + magnification * arrows[i].move_mm.x);
+    double y = px_per_mm * (arrows[i].at_mm.y + magnification * arrows[i].move_mm.y);
+    box = (map_box){fmin(box.left, x), fmax(box.right, x), fmin(box.top, y), fmax(box.bottom, y)};
+  }
+  return (map_box){box.left - MARGIN_PX, box.right + MARGIN_PX, box.top - MARGIN_PX,
+                   box.bottom + MARGIN_PX};
+}
+
 void fg_html_arrows(FILE *out, const fg_map_arrow *arrows, size_t count, const double size_mm[2],
                     const char *label) {
   double scale = MAP_PX / fmax(size_mm[0], size_mm[1]), longest = 0;
@@ -186,21 +205,22 @@ void fg_html_arrows(FILE *out, const fg_map_arrow *arrows, size_t count, const d
   double magnification = round_length(1.2 * typical_spacing(size_mm, count) / longest);
   double bar_mm = round_length(BAR_PX / scale / magnification);
   double width = size_mm[0] * scale, height = size_mm[1] * scale;
+  const map_box box = find_map_box(arrows, count, width, height, scale, magnification);
+  enum { LEGEND_PX = 24 };
+  double whole[2] = {box.right - box.left, box.bottom - box.top + LEGEND_PX};
   fprintf(out,
-          "<figure><svg class=\"plot\" width=\"%.0f\" height=\"%.0f\" viewBox=\"-8 -8 %.0f %.0f\" "
-          "role=\"img\" aria-label=\"%s\">\n",
-          width + 16, height + 40, width + 16, height + 40, label);
+          "<figure><svg class=\"plot\" width=\"%.0f\" height=\"%.0f\" viewBox=\"%.0f %.0f %.0f "
+          "%.0f\" role=\"img\" aria-label=\"%s\">\n",
+          whole[0], whole[1], box.left, box.top, whole[0], whole[1], label);
   fprintf(out, "<rect width=\"%.1f\" height=\"%.1f\" fill=\"none\" stroke=\"#9aa4ad\"/>\n", width,
           height);
   fputs("<g fill=\"none\" stroke=\"#c2188f\" stroke-width=\"1.3\">\n", out);
   for (size_t i = 0; i < count; i++)
     put_arrow(out, &arrows[i], scale, magnification);
-  fprintf(out, "<path d=\"M4 %.1fl%.1f 0\" stroke-width=\"3\"/></g>\n", height + 18,
+  fprintf(out, "<path d=\"M4 %.1fl%.1f 0\" stroke-width=\"3\"/></g>\n", box.bottom + 10,
           bar_mm * scale * magnification);
-  fprintf(out,
-          "<text x=\"%.1f\" y=\"%.1f\" font-size=\"13\" fill=\"currentColor\">%g µm; arrows are "
-          "magnified %g times</text></svg>\n",
-          bar_mm * scale * magnification + 12, height + 22, 1000 * bar_mm, magnification);
+  fprintf(out, "<text x=\"%.1f\" y=\"%.1f\">%g µm; arrows are magnified %g times</text></svg>\n",
+          bar_mm * scale * magnification + 12, box.bottom + 14, 1000 * bar_mm, magnification);
   fprintf(out, "<figcaption>%s. The frame is the scan, %.0f × %.0f mm.</figcaption></figure>\n",
           label, size_mm[0], size_mm[1]);
 }

@@ -33,7 +33,7 @@ static void put_quantity_value(FILE *out, const fg_quantity *row, const void *ob
     fputs("–", out);
     return;
   }
-  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
+  fprintf(out, "%s%.*f", value <= -0.5 * pow(10, -decimals) ? "−" : "", decimals, fabs(value));
   if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
 }
 

@@ -11,9 +11,8 @@ void fg_html_quantity_tile(FILE *out, fg_quantity_owner owner, const char *name,
                            const void *object) {
   const fg_quantity *row = fg_quantity_find(owner, name);
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
-  fg_html_tile(out,
-               &(fg_tile){title, .value = value, .u = u, .unit = row->unit,
-                          .decimals = fg_report_decimals(row, u), .minus = "−", .u_words = ""});
+  fg_html_tile(out, &(fg_tile){title, .value = value, .u = u, .unit = row->unit,
+                               .decimals = fg_report_decimals(row, u), .u_words = ""});
 }
 
 /* Writes the mean over the parts, with their spread as a standard deviation. */
@@ -36,7 +35,7 @@ static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *nam
     snprintf(small, sizeof small, "s = %.*f, n = %zu", row->decimals,
              sqrt(squares / (double)(count - 1)), count);
   fg_html_tile(out, &(fg_tile){title, .value = sum, .unit = row->unit, .decimals = row->decimals,
-                               .minus = "−", .small = small});
+                               .small = small});
 }
 
 void fg_tiles_of_beams(FILE *out, const fg_design *design, const fg_foil *foil) {

@@ -175,9 +175,10 @@ static void put_scale(const vectors *v) {
   char words[32];
   fg_scan_loop_length_words(um, words, sizeof words);
   fprintf(v->out,
-          "<svg class=\"plot scale\" viewBox=\"0 0 1060 24\" role=\"img\" aria-label=\"The scale\">"
+          "<div class=\"scroll\"><svg class=\"plot scale\" viewBox=\"0 0 1060 24\" role=\"img\" "
+          "aria-label=\"The scale\">"
           "<path class=\"bar\" d=\"M%d 12h%.1f\"/><text class=\"start\" x=\"%.1f\" y=\"17\">%s of "
-          "residual, drawn %.0f times as large%s</text></svg>\n",
+          "residual, drawn %.0f times as large%s</text></svg></div>\n",
           MARGIN, length, MARGIN + length + 10, words, 1000 * v->unit_per_um / v->scale,
           v->drawings > 1 ? ", in every drawing" : "");
 }

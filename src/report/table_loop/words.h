@@ -19,7 +19,7 @@ fg_loop_number fg_loop_p_text(double p);
 /* "runs", "bumps" or "rows", by the name of their order. */
 const char *fg_loop_row_words(const fg_loop_coordinate *order);
 
-/* "a drift over the runs", "neighbours that are alike along the runs", "a wrong response in row 3".
+/* "a drift over the runs", "serial correlation along the runs", "a wrong response in row 3".
  */
 void fg_loop_candidate_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
                              char text[FG_LOOP_WORDS]);

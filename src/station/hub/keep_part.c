@@ -144,7 +144,7 @@ static fg_status read_stations(fg_context *ctx, fg_hub *hub, fg_hub_state *state
   FG_TRY(fg_hub_store_run(
       ctx, &hub->store,
       "SELECT s.station, s.source, s.received_at, count(p.foil),"
-      " coalesce(sum(CASE WHEN p.verdict = 'fail' THEN 1 ELSE 0 END), 0),"
+      " coalesce(sum(CASE WHEN p.verdict = 'fail' AND p.withheld = '' THEN 1 ELSE 0 END), 0),"
       " coalesce(sum(CASE WHEN p.verdict IN ('fail', 'cannot_tell', 'not_measured')"
       " AND p.disposition = '' THEN 1 ELSE 0 END), 0)"
       " FROM hub_stations AS s LEFT JOIN hub_parts AS p"
@@ -189,7 +189,8 @@ static fg_status find_parts(fg_context *ctx, fg_hub *hub, const fg_hub_search *s
       "SELECT source, station, at, measured_at, serial, lot, die, operator, verdict, disposition,"
       " received_at, withheld, event, foil FROM hub_parts WHERE ($1 = '' OR station = $1)"
       " AND ($2 = '' OR serial = $2) AND ($3 = '' OR lot = $3)"
-      " AND ($4 = '' OR verdict = $4 OR ($4 = 'open' AND disposition = ''"
+      " AND ($4 = '' OR (verdict = $4 AND withheld = '') OR ($4 = 'withheld' AND withheld <> '')"
+      " OR ($4 = 'open' AND disposition = ''"
       " AND verdict IN ('fail', 'cannot_tell', 'not_measured')))"
       " ORDER BY received_at DESC, source, foil DESC LIMIT CAST($5 AS INTEGER)"
       " OFFSET CAST($6 AS INTEGER)",

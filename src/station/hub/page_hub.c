@@ -14,16 +14,10 @@ static void write_hub_input(FILE *out, const char *label, const char *name, cons
 }
 
 static void write_hub_search(FILE *out, const fg_hub_search *search) {
-  static const char *const words[] = {"",
-                                      "any",
-                                      "pass",
-                                      "PASS",
-                                      "fail",
-                                      "FAIL",
-                                      "cannot_tell",
-                                      "SCAN AGAIN: cannot tell",
-                                      "open",
-                                      "without disposition"};
+  static const char *const words[] = {
+      "",         "any",        "pass",        "PASS",
+      "fail",     "FAIL",       "cannot_tell", "SCAN AGAIN: cannot tell",
+      "withheld", "NO VERDICT", "open",        "without disposition"};
   fputs("<form class=\"fields\" method=\"get\" action=\"/\">", out);
   write_hub_input(out, "Serial", "serial", search->serial);
   write_hub_input(out, "Lot", "lot", search->lot);
@@ -77,7 +71,7 @@ void fg_hub_write_page(const fg_hub_search *search, const fg_hub_state *state, F
           "this address.</p>\n",
           out);
   if (state->station_count) fg_html_table(out, &fg_hub_station_members, &all, hub_station_at);
-  fputs("</section><section><h2>Parts</h2>\n", out);
+  fputs("</section><section><h2 class=\"first\">Parts</h2>\n", out);
   write_hub_search(out, search);
   if (state->part_count) fg_html_table(out, &fg_hub_part_members, &all, hub_part_at);
   fputs("<p class=\"paging\">", out);

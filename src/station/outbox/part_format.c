@@ -33,12 +33,21 @@ const char *fg_part_format_type(fg_part_format format) {
   return formats[format].type;
 }
 
-enum { SCAN, FOIL, LOT, DIE, OPERATOR, COIL, ORDER, DATE, DISPOSITION, REASON, COLUMNS };
+enum { SCAN, FOIL, LOT, DIE, OPERATOR, COIL, ORDER, DATE, DISPOSITION, REASON, WITHHELD, COLUMNS };
 
-static const char *const column_names[COLUMNS] = {
-    "scan", "foil", "lot", "die", "operator", "coil", "order", "date", "disposition", "reason"};
+static const char *const column_names[COLUMNS] = {"scan",        "foil",   "lot",     "die",
+                                                  "operator",    "coil",   "order",   "date",
+                                                  "disposition", "reason", "withheld"};
 
-static fg_status add_item(fg_context *ctx, fg_manifest *manifest, const fg_part *part) {
+/* The column of verdicts that do not hold is there where a part needs it. */
+static size_t count_columns(fg_part *const *parts, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (parts[i]->stored->withheld) return COLUMNS;
+  return WITHHELD;
+}
+
+static fg_status add_item(fg_context *ctx, fg_manifest *manifest, const fg_part *part,
+                          size_t columns) {
   char **row, date[FG_PART_TIME];
   const char *const cells[COLUMNS] = {
       [SCAN] = part->stored->path,
@@ -51,23 +60,24 @@ static fg_status add_item(fg_context *ctx, fg_manifest *manifest, const fg_part 
       [DATE] = date,
       [DISPOSITION] = part->disposition.kind,
       [REASON] = part->disposition.reason,
+      [WITHHELD] = part->stored->withheld ? part->stored->withheld : "",
   };
   /* Without its milliseconds; Z, as pages show local times. */
   fg_text_clip(date, sizeof date, "%.19s%s", part->measured_at, part->measured_at[0] ? "Z" : "");
   FG_TRY(fg_manifest_add_item(ctx, manifest, &row));
-  for (size_t i = 0; i < COLUMNS; i++)
+  for (size_t i = 0; i < columns; i++)
     FG_TRY(fg_text_print(ctx, &row[i], "%s", cells[i]));
   return FG_OK;
 }
 
 static fg_status make_manifest(fg_context *ctx, fg_part *const *parts, size_t count,
                                fg_manifest *manifest) {
-  size_t column;
-  for (size_t i = 0; i < COLUMNS; i++)
+  size_t column, columns = count_columns(parts, count);
+  for (size_t i = 0; i < columns; i++)
     FG_TRY(
         fg_manifest_add_column(ctx, manifest, column_names[i], strlen(column_names[i]), &column));
   for (size_t i = 0; i < count; i++)
-    FG_TRY(add_item(ctx, manifest, parts[i]));
+    FG_TRY(add_item(ctx, manifest, parts[i], columns));
   return FG_OK;
 }
 
