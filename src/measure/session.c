@@ -38,6 +38,7 @@ typedef struct job {
   fg_tiles view;
   int64_t origin_px[2];
   double background; /* form cantilever: level of the scan's border */
+  size_t number;     /* of the island, in the order in which they are read */
 } job;
 
 struct fg_session {
@@ -55,8 +56,10 @@ struct fg_session {
   bool ended;           /* nothing more will be queued */
   fg_status status;
   fg_context context;
-  size_t light, dark;  /* tiles of islands by polarity */
-  fg_flat_parts parts; /* form cantilever */
+  size_t light, dark;   /* tiles of islands by polarity */
+  fg_flat_parts *parts; /* form cantilever: of each island of the queue, so that sums over them do
+                           not depend on the order in which threads have measured them */
+  size_t parts_capacity;
   fg_gauge_sightings sightings;
   size_t foil_capacity;
 };
@@ -234,7 +237,7 @@ static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
   const fg_flat_island island = {&j->view, &j->island, j->origin_px, j->background};
   fg_status status = fg_flat_island_measure(ctx, &island, s->measurement, s->threads, &parts);
   pthread_mutex_lock(&s->lock);
-  if (status == FG_OK) status = fg_flat_parts_move(ctx, &parts, &s->parts);
+  if (status == FG_OK) status = fg_flat_parts_move(ctx, &parts, &s->parts[j->number]);
   pthread_mutex_unlock(&s->lock);
   fg_flat_parts_free(&parts);
   return status;
@@ -357,8 +360,14 @@ static fg_status push_job(fg_context *ctx, fg_session *s, const job *j) {
   else
     status = fg_memory_reserve(ctx, s->queued + 1, sizeof *s->queue, &s->queue_capacity,
                                (void **)&s->queue);
+  if (status == FG_OK)
+    status = fg_memory_reserve(ctx, s->queued + 1, sizeof *s->parts, &s->parts_capacity,
+                               (void **)&s->parts);
   if (status == FG_OK) {
-    s->queue[s->queued++] = *j;
+    s->parts[s->queued] = (fg_flat_parts){0};
+    s->queue[s->queued] = *j;
+    s->queue[s->queued].number = s->queued;
+    s->queued++;
     s->waiting_bytes += job_bytes(j);
   }
   pthread_cond_signal(&s->changed);
@@ -439,6 +448,16 @@ static void count_unmatched(fg_session *s) {
   s->measurement->specks += s->sightings.count - found;
 }
 
+static fg_status assemble_flat_foils(fg_context *ctx, fg_session *s) {
+  fg_flat_parts all = {0};
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < s->queued && status == FG_OK; i++)
+    status = fg_flat_parts_move(ctx, &s->parts[i], &all);
+  if (status == FG_OK) status = fg_flat_foils_assemble(ctx, &all, s->measurement);
+  fg_flat_parts_free(&all);
+  return status;
+}
+
 fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   end_work(s);
   while (work_on_one(s, false))
@@ -448,8 +467,7 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   s->worker_count = 0;
   if (s->status != FG_OK) return fg_fail(ctx, s->status, "%s", s->context.message);
   s->measurement->light_on_dark = s->light >= s->dark;
-  if (kind_of(s->measurement)->lies_flat)
-    FG_TRY(fg_flat_foils_assemble(ctx, &s->parts, s->measurement));
+  if (kind_of(s->measurement)->lies_flat) FG_TRY(assemble_flat_foils(ctx, s));
   fg_place_sort_foils(s->measurement);
   fg_gauges_match(&s->sightings, s->measurement);
   count_unmatched(s);
@@ -468,7 +486,9 @@ void fg_session_free(fg_session *s) {
     free_job(&s->queue[i]);
   free(s->queue);
   fg_islands_free(s->islands);
-  fg_flat_parts_free(&s->parts);
+  for (size_t i = 0; i < s->queued; i++)
+    fg_flat_parts_free(&s->parts[i]);
+  free(s->parts);
   free(s->sightings.list);
   pthread_mutex_destroy(&s->lock);
   pthread_cond_destroy(&s->changed);
