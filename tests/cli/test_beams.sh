@@ -124,6 +124,14 @@ expect 0 "" "$program" measure slits.png --design design.json --html page.html -
 grep -q "Every beam against its limits" page.html || fail "the page has no plots of beams"
 grep -q "How a beam is measured" page.html || fail "the page does not say how"
 
+# A foil of several islands: its numbers do not depend on which thread is first with one.
+"$renderer" render "$root/samples/render/cantilever.json" -o islands.png
+"$program" measure islands.png --design "$root/samples/cantilever_design.json" --threads 1 -o alone.json >alone.txt
+for repeat in 1 2 3 4 5 6 7 8 9 10 11 12; do
+  "$program" measure islands.png --design "$root/samples/cantilever_design.json" --threads 16 -o together.json >together.txt
+  cmp -s alone.json together.json && cmp -s alone.txt together.txt || fail "threads change the report, repeat $repeat"
+done
+
 # Other parts, other designs, other commands.
 expect 65 "no foil with beams in the picture" "$program" measure "$root/samples/gen2_foil.png" --design design.json
 expect 65 "no foil" "$program" measure comb.png
