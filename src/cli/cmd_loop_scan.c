@@ -253,13 +253,9 @@ static void note_empty_model(const arguments *a, const fg_scan_result *result) {
             path);
 }
 
-/* Notes the pictures' findings in the words of `measure`. */
 static void note_pictures(const fg_scan_result *result) {
   for (size_t i = 0; i < result->scans; i++)
-    for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
-      if (result->scan[i].before->picture.findings & words->finding)
-        fprintf(stderr, "foilgauge: note: %s: state of the picture: %s: %s\n",
-                result->scan[i].before->scan, words->name, words->meaning);
+    fg_cli_note_picture(result->scan[i].before->scan, result->scan[i].before->picture.findings);
 }
 
 static fg_status check_design(fg_context *ctx, const arguments *a, const fg_design *design) {

@@ -232,6 +232,15 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
+/* Notes what is odd about a scan. The report's note has the names of the picture's findings alone.
+ */
+static void note_oddities(const char *path, const fg_measurement *m) {
+  static const char of_picture[] = "state of the picture:";
+  if (m->warning[0] && strncmp(m->warning, of_picture, sizeof of_picture - 1) != 0)
+    fprintf(stderr, "foilgauge: note: %s: %s\n", path, m->warning);
+  fg_cli_note_picture(path, m->picture.findings);
+}
+
 /* Notes foils that could not be measured on standard error: the report may go to a file. */
 static void note_failures(const fg_measurement *measurement) {
   for (size_t i = 0; i < measurement->foil_count; i++) {
@@ -276,8 +285,7 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   scan->path = path;
   if (status == FG_OK) {
     scan->measurement = &run->measurements[index];
-    if (run->measurements[index].warning[0])
-      fprintf(stderr, "foilgauge: %s: note: %s\n", path, run->measurements[index].warning);
+    note_oddities(path, &run->measurements[index]);
     note_failures(&run->measurements[index]);
     run->measured++;
     return FG_OK;

@@ -6,10 +6,18 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "foilgauge/picture.h"
 
 int fg_cli_fail(const fg_context *ctx, fg_status status) {
   fprintf(stderr, "foilgauge: %s\n", ctx->message);
   return fg_status_exit_code(status);
+}
+
+void fg_cli_note_picture(const char *scan, unsigned findings) {
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+    if (findings & words->finding)
+      fprintf(stderr, "foilgauge: note: %s: state of the picture: %s: %s\n", scan, words->name,
+              words->meaning);
 }
 
 /* Answers --help wherever it stands: argp would read it as the value of an option before it

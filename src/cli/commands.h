@@ -90,6 +90,9 @@ fg_lot_shard fg_cli_shard(struct argp_state *state, const char *text);
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);
 
+/* Notes a scan's findings (fg_picture_finding) on standard error, each with its meaning. */
+void fg_cli_note_picture(const char *scan, unsigned findings);
+
 /* Writes the outcome of a lot on standard error; returns the exit code. */
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 

@@ -269,7 +269,9 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis) {
   if (!assembly->asked) return FG_OK;
   FG_TRY(fill_stock(ctx, analysis));
   plan_assembly(analysis);
-  if (assembly->stock.foils < pads)
+  if (!analysis->foil_count)
+    snprintf(assembly->why, sizeof assembly->why, "No bearings are drawn: no foil was measured.");
+  else if (assembly->stock.foils < pads)
     snprintf(assembly->why, sizeof assembly->why,
              "No bearings are drawn: %zu of %zu foils can be built in, a bearing takes %zu "
              "different ones.",
