@@ -33,7 +33,7 @@ typedef enum fg_scanner_limit {
   FG_SCANNER_NO_LIMIT,
 } fg_scanner_limit;
 
-/* A number of the scanner by both models; NaN where one does not know it. */
+/* A number of the scanner by both models; NaN where one does not know it, or neither holds it. */
 typedef struct fg_scanner_number {
   const char *id, *words;
   double older, newer; /* ratios less 1; u of each below */

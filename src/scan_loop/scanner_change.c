@@ -312,6 +312,12 @@ static fg_status test_change(fg_context *ctx, const change_work *work, change_st
 
 /* ---- the result ---- */
 
+/* Returns true when a model holds the number: what both leave out is no 0 that they know. */
+static bool is_held(const change_work *work, size_t i) {
+  double rounding = 1e-3 * ROUNDING_MM;
+  return find_u_of(work, i) > rounding || fabs(work->own[0][i]) + fabs(work->own[1][i]) > rounding;
+}
+
 static void tell_numbers(const change_work *work, const double *difference) {
   static const char *const ids[FG_SCANNER_NUMBERS] = {"scale", "axis_ratio", "shear"};
   static const char *const words[FG_SCANNER_NUMBERS] = {
@@ -321,7 +327,7 @@ static void tell_numbers(const change_work *work, const double *difference) {
   change->numbers = FG_SCANNER_NUMBERS;
   for (size_t k = 0; k < FG_SCANNER_NUMBERS; k++) {
     size_t i = 2 * work->places + k;
-    double known = is_compared(work, i) ? 1 : NAN;
+    double known = is_compared(work, i) && is_held(work, i) ? 1 : NAN;
     change->number[k] = (fg_scanner_number){.id = ids[k],
                                             .words = words[k],
                                             .older = known * work->own[0][i],
