@@ -226,7 +226,7 @@ static void what_is_no_text_is_refused(void **state) {
   assert_status(&ctx, fg_file_read_text(&ctx, where->file, 100, &text), FG_ERR_DATA);
   assert_has(ctx.message, "byte 2");
   assert_status(&ctx, fg_file_read_text(&ctx, where->path, 100, &text), FG_ERR_IO);
-  assert_has(ctx.message, "directory");
+  assert_has(ctx.message, "is a folder");
   assert_status(&ctx, fg_file_read_text(&ctx, "/nonexistent/design.json", 100, &text), FG_ERR_IO);
   assert_has(ctx.message, "/nonexistent/design.json");
   assert_null(text);
