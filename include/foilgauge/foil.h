@@ -429,17 +429,6 @@ void fg_foil_give_up(fg_foil *foil, const char *why);
  * shows none. */
 fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil);
 
-/* The blur of a strip's edges: that of the side where it is wider. */
-double fg_strip_blur_um(const fg_strip *strip);
-
-/* The strip's thickness in units of that blur. */
-double fg_strip_widths_in_blurs(const fg_strip *strip);
-
-/* By how much the edges of a thin strip err more than those of a wide one, since they blur into
- * each other: the error is a share of the blur that grows with its cube (reports/accuracy_hard.md)
- * below three blurs of thickness. 1: the strip is that wide. */
-double fg_strip_coarseness(const fg_strip *strip);
-
 /* Returns true when it differs from the design's by more than U: then reports state both. */
 bool fg_thickness_differs(const fg_design *design, const fg_thickness *strip);
 

@@ -95,6 +95,17 @@ void fg_strip_free(fg_strip *strip); /* frees the stations; NULL is fine */
  * the strip, since neighbouring stations err alike. NaN without usable stations. */
 fg_status fg_strip_measure_thickness(fg_context *ctx, fg_strip *strip);
 
+/* The blur of a strip's edges: that of the side where it is wider. */
+double fg_strip_blur_um(const fg_strip *strip);
+
+/* The strip's thickness in units of that blur. */
+double fg_strip_widths_in_blurs(const fg_strip *strip);
+
+/* By how much the edges of a thin strip err more than those of a wide one, since they blur into
+ * each other: the error is a share of the blur that grows with its cube (reports/accuracy_hard.md)
+ * below three blurs of thickness. 1: the strip is that wide. */
+double fg_strip_coarseness(const fg_strip *strip);
+
 #ifdef __cplusplus
 }
 #endif

@@ -20,6 +20,10 @@ fg_status fg_text_print(fg_context *ctx, char **text, const char *format, ...)
 fg_status fg_text_append(fg_context *ctx, char **text, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Appends a remark: behind "; " where *text holds others. */
+fg_status fg_text_append_remark(fg_context *ctx, char **text, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* Prints into a buffer of `size` bytes; a longer text is cut off. */
 void fg_text_clip(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

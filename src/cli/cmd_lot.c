@@ -249,21 +249,25 @@ static void print_bearings(const fg_lot_outcome *outcome) {
                    : ": the design's tolerances of a bearing judge nothing, the foils make none");
 }
 
+/* Notes how many of a kind there are, and the first. */
+static void note_finding(const fg_lot_finding *finding, const char *before, const char *thing,
+                         const char *after) {
+  if (finding->count)
+    fprintf(stderr, "foilgauge: note: %s%zu %s%s%s%s\n", before, finding->count, thing,
+            fg_plural(finding->count), after, finding->first);
+}
+
 /* Notes on the manifest and the scans that every report of a lot has. */
 static void print_report_notes(const fg_lot_notes *notes) {
-  const fg_lot_finding *dates = &notes->invalid_dates, *repeated = &notes->repeated;
+  const fg_lot_finding *dates = &notes->invalid_dates;
   if (dates->count)
     fprintf(stderr,
             "foilgauge: note: the manifest's column date: %zu cell%s without a date, the first is "
             "'%s' (2024-05-31 or 31.05.2024 would be one): the lot is dated by the times of its "
             "scans' files\n",
             dates->count, fg_plural(dates->count), dates->first);
-  if (repeated->count)
-    fprintf(
-        stderr,
-        "foilgauge: note: the same scan under another name, counted once: %zu scan%s; the first: "
-        "%s\n",
-        repeated->count, fg_plural(repeated->count), repeated->first);
+  note_finding(&notes->repeated, "the same scan under another name, counted once: ", "scan",
+               "; the first: ");
 }
 
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
@@ -359,17 +363,9 @@ static fg_status hold_expected(fg_context *ctx, const lot_arguments *arguments) 
 
 /* Notes on the inputs and on the earlier results of a run. */
 static void print_run_notes(const fg_lot_notes *notes) {
-  const fg_lot_finding *again = &notes->named_again, *folders = &notes->empty_folders;
-  const fg_lot_finding *pages = &notes->undrawn_pages;
-  if (again->count)
-    fprintf(stderr, "foilgauge: note: there twice and counted once: %zu scan%s; the first is %s\n",
-            again->count, fg_plural(again->count), again->first);
-  if (folders->count)
-    fprintf(
-        stderr,
-        "foilgauge: note: passed over: %zu folder%s with the name of a scan, and no scan in it; "
-        "the first is %s\n",
-        folders->count, fg_plural(folders->count), folders->first);
+  note_finding(&notes->named_again, "there twice and counted once: ", "scan", "; the first is ");
+  note_finding(&notes->empty_folders, "passed over: ", "folder",
+               " with the name of a scan, and no scan in it; the first is ");
   if (notes->damaged_lines)
     fprintf(
         stderr,
@@ -384,9 +380,7 @@ static void print_run_notes(const fg_lot_notes *notes) {
         stderr,
         "foilgauge: note: beyond the region that the scanner's model was found in: %zu scan%s\n",
         notes->beyond_model, fg_plural(notes->beyond_model));
-  if (pages->count)
-    fprintf(stderr, "foilgauge: note: %zu page%s could not be drawn; the first: %s\n", pages->count,
-            fg_plural(pages->count), pages->first);
+  note_finding(&notes->undrawn_pages, "", "page", " could not be drawn; the first: ");
 }
 
 static fg_status run_lot(fg_context *ctx, const lot_arguments *arguments, int *code) {

@@ -232,7 +232,7 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
-/* Notes what is odd about a scan. The report's note has the names of the picture's findings alone.
+/* Notes the oddities of a scan. The report's note has the names of the picture's findings alone.
  */
 static void note_oddities(const char *path, const fg_measurement *m) {
   static const char of_picture[] = "state of the picture:";

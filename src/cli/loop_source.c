@@ -87,8 +87,8 @@ static fg_status keep_complete_rows(fg_context *ctx, fg_loop_source *source) {
   fg_table_free(table);
   *table = complete;
   FG_TRY_EXIT(name_rows(ctx, source, row, kept));
-  FG_TRY_EXIT(fg_text_append(ctx, &source->said, "%sleft out: %zu of %zu rows, with an empty cell",
-                             source->said ? "; " : "", rows - kept, rows));
+  FG_TRY_EXIT(fg_text_append_remark(
+      ctx, &source->said, "left out: %zu of %zu rows, with an empty cell", rows - kept, rows));
 exit:
   free(row);
   return status;
@@ -153,11 +153,11 @@ static fg_status name_runs(fg_context *ctx, fg_loop_source *source) {
   source->inputs = measured->scans;
   source->failed = measured->failed > 0;
   if (!measured->failed && !measured->empty) return FG_OK;
-  return fg_text_append(ctx, &source->said,
-                        "%sleft out: %zu run%s without a scan, %zu scan%s that "
-                        "could not be measured",
-                        source->said ? "; " : "", measured->empty, fg_plural(measured->empty),
-                        measured->failed, fg_plural(measured->failed));
+  return fg_text_append_remark(ctx, &source->said,
+                               "left out: %zu run%s without a scan, %zu scan%s that "
+                               "could not be measured",
+                               measured->empty, fg_plural(measured->empty), measured->failed,
+                               fg_plural(measured->failed));
 }
 
 /* Missing columns are reported before the scans are measured. */
@@ -223,11 +223,11 @@ static fg_status note_prediction(fg_context *ctx, const fg_forming_prediction *p
   inputs[source->inputs++] = (fg_loop_input){source->forming_path, source->forming_sha256};
   free(source->input);
   source->input = inputs;
-  return fg_text_append(
+  return fg_text_append_remark(
       ctx, &source->said,
-      "%sdeclared: what %s (foilgauge forming) predicts of %s by the bump's number; "
+      "declared: what %s (foilgauge forming) predicts of %s by the bump's number; "
       "measured minus predicted is %+.6g on average",
-      source->said ? "; " : "", prediction->path, response, apart);
+      prediction->path, response, apart);
 }
 
 /* Declares a forming: its prediction of every row becomes the offset. */

@@ -18,19 +18,34 @@ fg_status fg_text_print(fg_context *ctx, char **text, const char *format, ...) {
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
 }
 
-fg_status fg_text_append(fg_context *ctx, char **text, const char *format, ...) {
+static fg_status append_behind(fg_context *ctx, char **text, const char *separator,
+                               const char *format, va_list arguments) {
   char *addition = NULL, *joined = NULL;
-  va_list arguments;
-  va_start(arguments, format);
-  int length = vasprintf(&addition, format, arguments);
-  va_end(arguments);
-  if (length < 0) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
-  fg_status status = fg_text_print(ctx, &joined, "%s%s", *text ? *text : "", addition);
+  if (vasprintf(&addition, format, arguments) < 0)
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  fg_status status =
+      fg_text_print(ctx, &joined, "%s%s%s", *text ? *text : "", *text ? separator : "", addition);
   free(addition);
   if (status != FG_OK) return status;
   free(*text);
   *text = joined;
   return FG_OK;
+}
+
+fg_status fg_text_append(fg_context *ctx, char **text, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  fg_status status = append_behind(ctx, text, "", format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+fg_status fg_text_append_remark(fg_context *ctx, char **text, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  fg_status status = append_behind(ctx, text, "; ", format, arguments);
+  va_end(arguments);
+  return status;
 }
 
 void fg_text_clip(char *text, size_t size, const char *format, ...) {

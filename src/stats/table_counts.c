@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/date.h"
-#include "core/date_order.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/table_times.h"
@@ -54,24 +53,18 @@ static fg_status count_days(fg_context *ctx, const fg_table *table, fg_column *c
   size_t first = 0;
   for (size_t i = 1; i < column->word_count; i++)
     if (values[i] < values[first]) first = i;
-  fg_status status =
-      fg_text_append(ctx, said, "%s%s counts days since %s%s", *said ? "; " : "", column->name,
-                     column->words[first], fg_table_date_words(reading));
+  fg_status status = fg_text_append_remark(ctx, said, "%s counts days since %s%s", column->name,
+                                           column->words[first], fg_table_date_words(reading));
   make_numbers(column, table->rows, values, values[first]);
   return status;
 }
 
 static fg_status say_ambiguous(fg_context *ctx, const fg_column *column, char **said) {
-  size_t unlike = 0;
-  while (unlike + 1 < column->word_count &&
-         fg_date_days_in(column->words[unlike], FG_DATE_DAY_FIRST) ==
-             fg_date_days_in(column->words[unlike], FG_DATE_MONTH_FIRST))
-    unlike++;
-  return fg_text_append(
+  return fg_text_append_remark(
       ctx, said,
-      "%s%s is not counted as time: dates such as %s may have the day or the month "
+      "%s is not counted as time: dates such as %s may have the day or the month "
       "first, and no row tells; write them as 2026-03-31",
-      *said ? "; " : "", column->name, column->words[unlike]);
+      column->name, column->words[fg_table_first_ambiguous(column)]);
 }
 
 /* *counted: the column is one of dates, and they were counted. */
@@ -90,9 +83,8 @@ static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column 
   FG_TRY(fg_memory_allocate(ctx, column->word_count, sizeof *values, (void **)&values));
   fg_status status = count_dates(ctx, table, column, values, &counted, said);
   if (status == FG_OK && !counted && column->word_count > max && count_serials(column, values)) {
-    status =
-        fg_text_append(ctx, said, "%s%s counts by the digits behind '%.*s'", *said ? "; " : "",
-                       column->name, (int)length_before_digits(column->words[0]), column->words[0]);
+    status = fg_text_append_remark(ctx, said, "%s counts by the digits behind '%.*s'", column->name,
+                                   (int)length_before_digits(column->words[0]), column->words[0]);
     make_numbers(column, table->rows, values, 0);
   }
   free(values);
@@ -116,7 +108,7 @@ static fg_status count_hours(fg_context *ctx, const fg_table *table, fg_column *
   if (!fg_table_read_hours(column, values)) return FG_OK;
   *is_order = fg_table_words_in_order(table, column, values);
   make_numbers(column, table->rows, values, 0);
-  return fg_text_append(ctx, said, "%s%s counts hours of the day", *said ? "; " : "", column->name);
+  return fg_text_append_remark(ctx, said, "%s counts hours of the day", column->name);
 }
 
 /* *moments: the column has a moment in each row that has a cell, and they may be an order. */
@@ -151,8 +143,7 @@ static fg_status count_digits(fg_context *ctx, const fg_table *table, fg_column 
   }
   for (size_t i = 0; i < table->rows; i++)
     column->number[i] = (fg_extended){days_of_digits(column->number[i].value) - first, 0};
-  return fg_text_append(ctx, said, "%s%s counts days since %.0f", *said ? "; " : "", column->name,
-                        earliest);
+  return fg_text_append_remark(ctx, said, "%s counts days since %.0f", column->name, earliest);
 }
 
 /* The order that is asked for cannot be counted. Other words than dates are refused where they are

@@ -36,12 +36,12 @@ static bool read_all(const fg_column *column, fg_date_order order, double *value
   return true;
 }
 
-static bool order_matters(const fg_column *column) {
-  for (size_t i = 0; i < column->word_count; i++)
-    if (fg_date_days_in(column->words[i], FG_DATE_DAY_FIRST) !=
-        fg_date_days_in(column->words[i], FG_DATE_MONTH_FIRST))
-      return true;
-  return false;
+size_t fg_table_first_ambiguous(const fg_column *column) {
+  size_t i = 0;
+  while (i < column->word_count && fg_date_days_in(column->words[i], FG_DATE_DAY_FIRST) ==
+                                       fg_date_days_in(column->words[i], FG_DATE_MONTH_FIRST))
+    i++;
+  return i;
 }
 
 static double span_of(const double *values, size_t count) {
@@ -81,7 +81,9 @@ fg_date_reading fg_table_read_dates(const fg_table *table, const fg_column *colu
   if (!day_first && !month_first) return FG_DATES_NONE;
   if (day_first && !month_first) return FG_DATES_DAY_FIRST;
   if (day_first)
-    return order_matters(column) ? read_by_rows(table, column, values) : FG_DATES_PLAIN;
+    return fg_table_first_ambiguous(column) < column->word_count
+               ? read_by_rows(table, column, values)
+               : FG_DATES_PLAIN;
   read_all(column, FG_DATE_MONTH_FIRST, values);
   return FG_DATES_MONTH_FIRST;
 }

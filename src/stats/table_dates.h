@@ -22,6 +22,10 @@ typedef enum fg_date_reading {
 /* values: days since 1970 of each of the column's words, where they are dates that can be read. */
 fg_date_reading fg_table_read_dates(const fg_table *table, const fg_column *column, double *values);
 
+/* Returns the first of the column's dates that is another day with its month first; word_count:
+ * none is. */
+size_t fg_table_first_ambiguous(const fg_column *column);
+
 /* Returns how dates were read, to stand behind "counts days since ..."; "" where nothing was to be
  * decided. */
 const char *fg_table_date_words(fg_date_reading reading);

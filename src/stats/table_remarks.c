@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 
 enum { NAMED = 5 }; /* rows and names that are told; of more the number */
@@ -18,24 +19,15 @@ typedef struct remarks {
   char **said;
 } remarks;
 
-static const char *separator(const remarks *about) {
-  return *about->said ? "; " : "";
-}
-
 static bool is_numbers(const fg_table *table, const fg_column *column) {
   return column->number_count == table->rows && !column->uncertainty;
-}
-
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 /* The numbers of a column in rising order. */
 static void sort_numbers(const fg_table *table, const fg_column *column, double *value) {
   for (size_t i = 0; i < table->rows; i++)
     value[i] = column->number[i].value;
-  qsort(value, table->rows, sizeof *value, by_value);
+  fg_sort(value, table->rows);
 }
 
 static size_t count_distinct(const double *sorted, size_t count) {
@@ -87,7 +79,7 @@ static bool rows_are_told_apart(const fg_table *table, size_t different, double 
 
 static fg_status say_copies(const remarks *about, const row_at *rows, size_t copies) {
   size_t told = 0;
-  FG_TRY(fg_text_append(about->ctx, about->said, "%srows ", separator(about)));
+  FG_TRY(fg_text_append_remark(about->ctx, about->said, "rows "));
   for (size_t i = 1; i < about->table->rows && told < NAMED; i++) {
     if (compare_cells(&rows[i - 1], &rows[i])) continue;
     FG_TRY(fg_text_append(about->ctx, about->said, "%s%zu and %zu", told++ ? ", " : "",
@@ -150,7 +142,7 @@ static fg_status say_far(const remarks *about, const fg_column *column, const do
   size_t count = about->table->rows, told = 0;
   double low = sign > 0 ? sorted[0] : sorted[far];
   double high = sign > 0 ? sorted[count - far - 1] : sorted[count - 1];
-  FG_TRY(fg_text_append(about->ctx, about->said, "%s%s is ", separator(about), column->name));
+  FG_TRY(fg_text_append_remark(about->ctx, about->said, "%s is ", column->name));
   for (size_t i = 0; i < count && told < NAMED; i++) {
     double value = column->number[i].value;
     if (value >= low && value <= high) continue;
@@ -205,13 +197,13 @@ static fg_status remark_ends(const remarks *about, const fg_column *column, doub
     size_t at_end = count_at_end(value, rows, highest, &repeats);
     if (at_end < AT_END_MIN || at_end * AT_END_SHARE < rows || at_end < AT_END_TIMES * repeats)
       continue;
-    FG_TRY(fg_text_append(
+    FG_TRY(fg_text_append_remark(
         about->ctx, about->said,
-        "%s%s is %.6g, its %s value, in %zu of %zu rows: if the gauge ends there, they "
+        "%s is %.6g, its %s value, in %zu of %zu rows: if the gauge ends there, they "
         "are limits and no values, which look like bends, interactions and "
         "a scatter that changes, and make every slope too small",
-        separator(about), column->name, highest ? value[rows - 1] : value[0],
-        highest ? "highest" : "lowest", at_end, rows));
+        column->name, highest ? value[rows - 1] : value[0], highest ? "highest" : "lowest", at_end,
+        rows));
   }
   return FG_OK;
 }
@@ -242,11 +234,10 @@ static fg_status remark_names(const remarks *about, const fg_column *column) {
     for (size_t k = i + 1; k < column->word_count && told < NAMED; k++) {
       if (!has_letter(column->words[i]) || !is_same_name(column->words[i], column->words[k]))
         continue;
-      FG_TRY(fg_text_append(about->ctx, about->said, "%s'%s' and '%s'",
-                            told++         ? ", "
-                            : *about->said ? "; "
-                                           : "",
-                            column->words[i], column->words[k]));
+      const char *first = column->words[i], *second = column->words[k];
+      FG_TRY(told++
+                 ? fg_text_append(about->ctx, about->said, ", '%s' and '%s'", first, second)
+                 : fg_text_append_remark(about->ctx, about->said, "'%s' and '%s'", first, second));
     }
   if (!told) return FG_OK;
   return fg_text_append(about->ctx, about->said,
@@ -269,11 +260,11 @@ static const char *common_unit(const fg_column *column) {
 
 static fg_status remark_units(const remarks *about, const fg_column *column) {
   if (column->word_count < 2 || column->number_count || !*common_unit(column)) return FG_OK;
-  return fg_text_append(
+  return fg_text_append_remark(
       about->ctx, about->said,
-      "%s%s holds words such as '%s', which count as levels: for a trend write the "
+      "%s holds words such as '%s', which count as levels: for a trend write the "
       "numbers alone, and the unit into the column's name",
-      separator(about), column->name, column->words[0]);
+      column->name, column->words[0]);
 }
 
 static fg_status remark_column(const remarks *about, const fg_column *column, double *value) {

@@ -94,7 +94,7 @@ static void give_roles(fg_loop_coordinate *at) {
 fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *build,
                                   const char *name, const char *why) {
   char **text = &build->out->excluded;
-  return fg_text_append(ctx, text, "%s%s: %s", *text ? "; " : "", name, why);
+  return fg_text_append_remark(ctx, text, "%s: %s", name, why);
 }
 
 /* Rows that a column lacks, and the way to look into it nevertheless. */

@@ -128,6 +128,11 @@ static versions_of find_versions(const fg_score_workspace *workspace, size_t c) 
   return own;
 }
 
+/* Returns the version in the middle, which stands for all. */
+static size_t middle_of(versions_of own) {
+  return own.first + own.count / 2;
+}
+
 typedef struct draw_sums {
   double null, with; /* weighted residual sums: without the candidate, with its best version */
   double own;        /* with over without, between groups */
@@ -160,7 +165,7 @@ static draw_sums residual_sums(const power_workspace *power, versions_of own, si
 static double share_found(const power_workspace *power, versions_of own, double critical,
                           double a) {
   const fg_score_workspace *workspace = power->workspace;
-  const fg_engine_version *version = &workspace->version[own.first + own.count / 2];
+  const fg_engine_version *version = &workspace->version[middle_of(own)];
   double k = fg_engine_version_dof(workspace, version);
   size_t found = 0;
   for (size_t b = 0; b < DRAWS; b++) {
@@ -182,13 +187,12 @@ static fg_status one_amplitude(fg_context *ctx, power_workspace *power, size_t c
                                double *amplitude) {
   const fg_score_workspace *workspace = power->workspace;
   versions_of own = find_versions(workspace, c);
-  size_t middle = own.first + own.count / 2;
   *amplitude = NAN;
   if (own.count == 0) return FG_OK;
-  const fg_engine_version *version = &workspace->version[middle];
+  const fg_engine_version *version = &workspace->version[middle_of(own)];
   double k = fg_engine_version_dof(workspace, version);
   if (version->rank == 0 || k + 2 > fg_engine_version_whole(workspace, version)) return FG_OK;
-  FG_TRY(set_effect(ctx, power, middle));
+  FG_TRY(set_effect(ctx, power, middle_of(own)));
   double low = 1e-3, high = 1e3;
   if (share_found(power, own, critical, high) < wanted) return FG_OK;
   for (int i = 0; i < HALVINGS; i++) {

@@ -241,8 +241,8 @@ static fg_status describe_left_out(fg_context *ctx, reading *r) {
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i].count)
-      FG_TRY(fg_text_append(ctx, &r->out->said, "%sleft out: %zu %s", r->out->said ? "; " : "",
-                            counts[i].count, counts[i].words));
+      FG_TRY(fg_text_append_remark(ctx, &r->out->said, "left out: %zu %s", counts[i].count,
+                                   counts[i].words));
   return FG_OK;
 }
 
