@@ -34,7 +34,7 @@ touch -d "1 hour ago" watched/s1.jpg # a file that was refused is looked at agai
 expect 0 '1 measured' "$program" station watched --design design.json --once --allow-lossy
 
 # Allowed: in every form of the report, and wider than the same pixels that do not tell where they are from.
-expect 0 'note: compressed with loss \(JPEG, quality 80\)' \
+expect 0 'note: lot/scan.jpg: compressed with loss \(JPEG, quality 80\)' \
   measure lot/scan.jpg --allow-lossy -o lossy.json --csv lossy.csv --html lossy.html
 measure pixels.pgm --dpi 2400 -o pixels.json || fail "the pixels are not measured"
 valid measure.schema.json lossy.json
