@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/numerics.h"
 #include "effect/columns.h"
 
 /* Mean square below which a column counts as zero beside the geometry. */
@@ -27,13 +26,30 @@ double fg_search_along(const fg_search_columns *s, size_t k, const double *v) {
   return fg_dot_in_lanes(s->basis + k * s->rows + first, v + first, s->last[k] - first);
 }
 
+size_t fg_search_along_next(const fg_search_columns *s, size_t rank, size_t k, const double *v,
+                            double along[FG_DOTS_AT_ONCE]) {
+  size_t first = s->first[k], last = s->last[k], count = 1;
+  const double *vector[FG_DOTS_AT_ONCE] = {s->basis + k * s->rows + first};
+  while (count < FG_DOTS_AT_ONCE && k + count < rank && s->first[k + count] == first &&
+         s->last[k + count] == last) {
+    vector[count] = vector[count - 1] + s->rows;
+    count++;
+  }
+  if (count == FG_DOTS_AT_ONCE) {
+    fg_dots_in_lanes(v + first, vector, last - first, along);
+    return count;
+  }
+  along[0] = fg_search_along(s, k, v);
+  return 1;
+}
+
 void fg_search_project_out(const fg_search_columns *s, size_t rank, double *v) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < rank; k++) {
-      const double *b = s->basis + k * s->rows;
+      size_t first = s->first[k];
       double d = fg_search_along(s, k, v);
-      for (size_t i = s->first[k]; d != 0 && i < s->last[k]; i++)
-        v[i] -= d * b[i];
+      if (d != 0)
+        fg_subtract_share(v + first, d, s->basis + k * s->rows + first, s->last[k] - first);
     }
 }
 
@@ -95,9 +111,18 @@ static void fill_products(fg_search_columns *s, size_t from) {
   for (size_t a = from; a < s->count; a++) {
     const double *p = s->values + a * s->rows;
     s->right[a] = fg_dot_in_lanes(p, s->residual, s->rows);
-    for (size_t b = 0; b <= a; b++)
-      s->gram[a * FG_SEARCH_COLUMNS + b] = s->gram[b * FG_SEARCH_COLUMNS + a] =
-          fg_dot_in_lanes(p, s->values + b * s->rows, s->rows);
+    double *products = s->gram + a * FG_SEARCH_COLUMNS;
+    size_t b = 0;
+    for (; b + FG_DOTS_AT_ONCE <= a + 1; b += FG_DOTS_AT_ONCE) {
+      const double *other = s->values + b * s->rows;
+      const double *next[FG_DOTS_AT_ONCE] = {other, other + s->rows, other + 2 * s->rows,
+                                             other + 3 * s->rows};
+      fg_dots_in_lanes(p, next, s->rows, products + b);
+    }
+    for (; b <= a; b++)
+      products[b] = fg_dot_in_lanes(p, s->values + b * s->rows, s->rows);
+    for (b = 0; b < a; b++)
+      s->gram[b * FG_SEARCH_COLUMNS + a] = products[b];
   }
 }
 

@@ -3,6 +3,7 @@
 #ifndef FG_EFFECT_SEARCH_COLUMNS_H
 #define FG_EFFECT_SEARCH_COLUMNS_H
 
+#include "core/numerics.h"
 #include "effect_search/explanations.h"
 #include "rows/scatter.h"
 
@@ -65,6 +66,10 @@ size_t fg_search_gather(const fg_search_columns *columns, const fg_effect *effec
                         const double *shape, double *out);
 /* Product with vector k of the basis. */
 double fg_search_along(const fg_search_columns *columns, size_t k, const double *v);
+/* Products with vectors of the basis from k on, below `rank`: of as many as go in one pass, one at
+ * least. Returns their number. */
+size_t fg_search_along_next(const fg_search_columns *columns, size_t rank, size_t k,
+                            const double *v, double along[FG_DOTS_AT_ONCE]);
 /* Removes from v its part in the first `rank` vectors of the basis. */
 void fg_search_project_out(const fg_search_columns *columns, size_t rank, double *v);
 

@@ -63,12 +63,13 @@ static fg_search_hit gain_of(const look *l, double place, size_t count, const do
     for (size_t b = 0; b <= a; b++)
       system.matrix[a][b] = fg_dot_in_lanes(columns + a * c->rows, columns + b * c->rows, c->rows);
   }
-  for (size_t k = 0; k < l->rank; k++) {
-    double along[FG_SMALL_MAX];
+  for (size_t k = 0, taken = 1; k < l->rank; k += taken) {
+    double along[FG_SMALL_MAX][FG_DOTS_AT_ONCE];
     for (size_t a = 0; a < count; a++) {
-      along[a] = fg_search_along(c, k, columns + a * c->rows);
-      for (size_t b = 0; b <= a; b++)
-        system.matrix[a][b] -= along[a] * along[b];
+      taken = fg_search_along_next(c, l->rank, k, columns + a * c->rows, along[a]);
+      for (size_t q = 0; q < taken; q++)
+        for (size_t b = 0; b <= a; b++)
+          system.matrix[a][b] -= along[a][q] * along[b][q];
     }
   }
   for (size_t a = 0; a < count; a++)

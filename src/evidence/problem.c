@@ -102,11 +102,17 @@ static fg_evidence_span span_of(const double *values, size_t rows) {
   return span;
 }
 
+fg_evidence_span fg_evidence_overlap(fg_evidence_span a, fg_evidence_span b) {
+  fg_evidence_span both = {a.first > b.first ? a.first : b.first,
+                           a.last < b.last ? a.last : b.last};
+  if (both.last < both.first) both.last = both.first;
+  return both;
+}
+
 double fg_evidence_dot(const double *a, fg_evidence_span of_a, const double *b,
                        fg_evidence_span of_b) {
-  size_t first = of_a.first > of_b.first ? of_a.first : of_b.first;
-  size_t last = of_a.last < of_b.last ? of_a.last : of_b.last;
-  return first < last ? fg_dot_in_lanes(a + first, b + first, last - first) : 0;
+  const fg_evidence_span both = fg_evidence_overlap(of_a, of_b);
+  return fg_dot_in_lanes(a + both.first, b + both.first, both.last - both.first);
 }
 
 /* Removes the flat directions; `along` gets the parts along them. */
@@ -118,8 +124,7 @@ static void project_flat_out(const fg_evidence_problem *p, double *v, double *al
       const fg_evidence_span span = p->basis_span[k];
       double d = fg_dot_in_lanes(b + span.first, v + span.first, span.last - span.first);
       along[k] += d;
-      for (size_t i = span.first; i < span.last; i++)
-        v[i] -= d * b[i];
+      fg_subtract_share(v + span.first, d, b + span.first, span.last - span.first);
     }
 }
 

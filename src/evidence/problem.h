@@ -63,6 +63,9 @@ void fg_evidence_make(const fg_evidence_problem *problem, const double *values, 
                       fg_evidence_column *column);
 /* Copies a column to a place of the problem's. */
 void fg_evidence_put(fg_evidence_problem *problem, size_t at, const fg_evidence_column *column);
+/* Rows in both; empty where there are none. */
+fg_evidence_span fg_evidence_overlap(fg_evidence_span a, fg_evidence_span b);
+/* Product of two vectors on the rows in both. */
 double fg_evidence_dot(const double *a, fg_evidence_span of_a, const double *b,
                        fg_evidence_span of_b);
 

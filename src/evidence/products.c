@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/numerics.h"
 #include "core/parallel.h"
 
 /* Columns that a thread takes at once. */
@@ -30,17 +31,25 @@ static double *far_product(fg_evidence_problem *p, size_t column, size_t c) {
   return row ? &row[c] : NULL;
 }
 
+/* Returns a product that is known, or NAN; `kept` gets where it is kept (NULL: no memory). */
+static double known_product(fg_evidence_problem *p, size_t column, size_t c, double **kept) {
+  *kept = near_product(p, column, c);
+  if (!*kept) *kept = far_product(p, column, c);
+  double value = *kept ? **kept : NAN;
+  if (isnan(value) && p->gram[c]) value = p->gram[c][column];
+  if (*kept && isnan(**kept)) **kept = value;
+  return value;
+}
+
 void fg_evidence_products(fg_evidence_problem *p, size_t column, size_t first, size_t count,
                           double *into) {
   const double *own = p->values + column * p->rows;
   for (size_t c = first; c < first + count; c++) {
-    double *known = near_product(p, column, c);
-    if (!known) known = far_product(p, column, c);
-    double value = known ? *known : NAN;
-    if (isnan(value) && p->gram[c]) value = p->gram[c][column];
-    if (isnan(value))
+    double *kept, value = known_product(p, column, c, &kept);
+    if (isnan(value)) {
       value = fg_evidence_dot(own, p->span[column], p->values + c * p->rows, p->span[c]);
-    if (known && isnan(*known)) *known = value;
+      if (kept) *kept = value;
+    }
     into[c - first] = value;
   }
 }
@@ -65,10 +74,43 @@ static void find_own(const column_task *task, size_t c) {
   if (count <= FG_EVIDENCE_NEAR) fg_evidence_products(task->problem, c, first, count, product);
 }
 
+/* Columns whose products with one column are found in one pass: on the same rows. */
+typedef struct batch {
+  fg_evidence_span span;
+  size_t count;
+  const double *values[FG_DOTS_AT_ONCE];
+  double *kept[FG_DOTS_AT_ONCE];
+} batch;
+
+static void find_batch(const double *own, batch *b) {
+  double product[FG_DOTS_AT_ONCE];
+  size_t rows = b->span.last - b->span.first;
+  if (b->count == FG_DOTS_AT_ONCE)
+    fg_dots_in_lanes(own + b->span.first, b->values, rows, product);
+  else
+    for (size_t i = 0; i < b->count; i++)
+      product[i] = fg_dot_in_lanes(own + b->span.first, b->values[i], rows);
+  for (size_t i = 0; i < b->count; i++)
+    *b->kept[i] = product[i];
+  b->count = 0;
+}
+
 static void find_wanted(const column_task *task, size_t c) {
-  double product;
-  for (size_t k = 0; task->wanted[c] && k < task->count; k++)
-    fg_evidence_products(task->problem, task->column[k], c, 1, &product);
+  fg_evidence_problem *p = task->problem;
+  const double *own = p->values + c * p->rows;
+  batch next = {.count = 0};
+  for (size_t k = 0; task->wanted[c] && k < task->count; k++) {
+    size_t column = task->column[k];
+    double *kept, value = known_product(p, column, c, &kept);
+    if (!isnan(value) || !kept) continue;
+    fg_evidence_span span = fg_evidence_overlap(p->span[column], p->span[c]);
+    bool same = span.first == next.span.first && span.last == next.span.last;
+    if (next.count == FG_DOTS_AT_ONCE || !same) find_batch(own, &next);
+    next.span = span;
+    next.kept[next.count] = kept;
+    next.values[next.count++] = p->values + column * p->rows + span.first;
+  }
+  find_batch(own, &next);
 }
 
 static fg_status find_chunk(fg_context *ctx, void *shared, size_t item) {
