@@ -87,6 +87,15 @@ def time_pages(station):
     return rows
 
 
+# What the page Now says while a file is received or measured, with its name.
+UNDER_WAY = (b"<b>RECEIVING</b>", b"<b>MEASURING</b>")
+
+
+def has_verdict(station, name):
+    page = station.get("/")
+    return name.encode() in page and not any(words in page for words in UNDER_WAY)
+
+
 def arrivals(folder, count):
     """Seconds from the close of the file to the verdict on the page, of scans of 18 Mpx and more."""
     station, waits = Station(folder, RECIPE), []
@@ -97,7 +106,7 @@ def arrivals(folder, count):
         with open(os.path.join(folder, name), "wb") as file:
             file.write(with_note(png, f"arrival {i}"))
         start = time.perf_counter()
-        while f"arrival{i:03d}".encode() not in station.get("/"):
+        while not has_verdict(station, f"arrival{i:03d}"):
             if time.perf_counter() - start > 60:
                 sys.exit("station_speed.py: a scan did not arrive")
             time.sleep(0.005)
@@ -149,7 +158,7 @@ def a_day(scans):
 
 def wait_for(station, serial):
     start = time.monotonic()
-    while serial.encode() not in station.get("/"):
+    while not has_verdict(station, serial):
         if time.monotonic() - start > 120:
             sys.exit(f"station_speed.py: scan {serial} did not arrive")
         time.sleep(0.02)
@@ -179,7 +188,7 @@ def write(path, options, filled, starts, pages, waits, requests, day):
         f"`tests/bench/station_speed.sh` writes this page. {benchlib.program_version()} on {benchlib.machine()}; load average "
         f"{load:.1f} when it was written: above 1 others were at work and times are longer than they need be.\n",
         "## From arrival to verdict\n",
-        f"Scans of 20 Mpx (4800 dpi, 8 bit), {len(ms)} of them, each from the close of its file to its serial number on the page "
+        f"Scans of 20 Mpx (4800 dpi, 8 bit), {len(ms)} of them, each from the close of its file to its verdict on the page "
         f"Now, which is asked for every 5 ms: median {statistics.median(ms):.0f} ms, longest {ms[-1]:.0f} ms.\n",
         f"## With {options.scans} scans in the database\n",
         f"Made by `tests/bench/station_fill.py` in {filled:.0f} s: one scan is measured, the others are its rows with other values. Start, "
