@@ -38,7 +38,7 @@ start() {
   local folder=$1
   shift
   : >"$work/address"
-  env --default-signal=INT "$program" station "$folder" --port 0 "$@" >"$work/address" 2>>"$work/said" &
+  env --default-signal=INT,HUP "$program" station "$folder" --port 0 "$@" >"$work/address" 2>>"$work/said" &
   station=$!
   for ((i = 0; i < 1500; i++)); do
     [ ! -s "$work/address" ] || return 0
