@@ -87,7 +87,7 @@ def time_pages(station):
     return rows
 
 
-# What the page Now says while a file is received or measured, with its name.
+# Words of the page Now beside the name of a file that is received or measured.
 UNDER_WAY = (b"<b>RECEIVING</b>", b"<b>MEASURING</b>")
 
 
